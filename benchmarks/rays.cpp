@@ -1,0 +1,107 @@
+// How much of a render is ray tracing: renders passes on one thread, records every ray on the way to Embree, then sends the same rays
+// through a bare loop of rtcIntersect1 / rtcOccluded1. Prints rays/s of both and their ratio, in turn, several times.
+//
+//   bench_rays SCENE.xml INTEGRATOR [WIDTH HEIGHT [PASSES [ROUNDS [MAX_DEPTH]]]]
+
+#include <embree3/rtcore.h>
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+#include "ajar/core/error.h"
+#include "ajar/render/render.h"
+#include "ajar/scene/load.h"
+
+namespace {
+
+struct Recorded {
+  RTCRay ray;
+  bool any_hit;
+};
+
+// The wrapped entry points below have no other way to reach the benchmark.
+bool recording = false;
+std::vector<Recorded> rays;
+RTCScene traced = nullptr;
+
+}  // namespace
+
+extern "C" {
+void __real_rtcIntersect1(RTCScene, RTCIntersectContext*, RTCRayHit*);
+void __real_rtcOccluded1(RTCScene, RTCIntersectContext*, RTCRay*);
+
+void __wrap_rtcIntersect1(RTCScene scene, RTCIntersectContext* context, RTCRayHit* hit) {
+  if (recording) rays.push_back({hit->ray, false}), traced = scene;
+  __real_rtcIntersect1(scene, context, hit);
+}
+
+void __wrap_rtcOccluded1(RTCScene scene, RTCIntersectContext* context, RTCRay* ray) {
+  if (recording) rays.push_back({*ray, true}), traced = scene;
+  __real_rtcOccluded1(scene, context, ray);
+}
+}
+
+namespace {
+
+using namespace ajar;
+
+double render_once(const Scene& scene, const Accel& accel, const RenderOptions& options) {
+  RenderState state = start_render(scene, options);
+  render(scene, accel, options, state, [](const RenderState&) { return true; });
+  return state.stats.cpu_seconds;
+}
+
+double bare_loop(uint64_t& hits) {
+  const double start = process_cpu_seconds();
+  for (const Recorded& r : rays) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    if (r.any_hit) {
+      RTCRay ray = r.ray;
+      __real_rtcOccluded1(traced, &context, &ray);
+      hits += ray.tfar < 0;
+    } else {
+      RTCRayHit hit;
+      hit.ray = r.ray;
+      hit.hit.geomID = hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+      __real_rtcIntersect1(traced, &context, &hit);
+      hits += hit.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+    }
+  }
+  return process_cpu_seconds() - start;
+}
+
+int argument(int argc, char** argv, int i, int otherwise) { return argc > i ? std::atoi(argv[i]) : otherwise; }
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  if (argc < 3) return fmt::print("bench_rays SCENE.xml INTEGRATOR [WIDTH HEIGHT [PASSES [ROUNDS [MAX_DEPTH]]]]\n"), 2;
+  Scene scene = load_scene(argv[1]);
+  RenderOptions options;
+  options.integrator = argv[2];
+  options.threads = 1;
+  options.max_depth = argument(argc, argv, 7, scene.hints.max_depth);
+  const int width = argument(argc, argv, 3, 320), height = argument(argc, argv, 4, 180);
+  scene.camera.plane.y = scene.camera.plane.x * float(height) / float(width);
+  scene.camera.width = scene.camera.crop_width = width, scene.camera.height = scene.camera.crop_height = height;
+  options.spp = uint32_t(argument(argc, argv, 5, 4));
+  const Accel accel(scene);
+  const double samples = double(width) * height * options.spp;
+  recording = true;
+  render_once(scene, accel, options);
+  recording = false;
+  fmt::print("{} {} {}x{}, {} passes: {:.2f} rays per sample\n", argv[1], argv[2], width, height, options.spp, double(rays.size()) / samples);
+  for (int round = 0; round < argument(argc, argv, 6, 5); ++round) {
+    uint64_t hits = 0;
+    double bare = 0, whole = 0;  // each round in the other order
+    if (round % 2 == 0) bare = bare_loop(hits);
+    whole = render_once(scene, accel, options);
+    if (round % 2 == 1) bare = bare_loop(hits);
+    fmt::print("bare {:.3f} Mrays/s  render {:.3f} Mrays/s  ratio {:.3f}  {:.3f} us CPU per sample  ({} hits)\n", rays.size() / bare * 1e-6,
+               rays.size() / whole * 1e-6, bare / whole, whole / samples * 1e6, hits);
+  }
+  return 0;
+} catch (const ajar::Error& e) {
+  return fmt::print(stderr, "{}\n", e.what()), 2;
+}

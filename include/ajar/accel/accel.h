@@ -1,0 +1,34 @@
+// Enters: a finished scene; rays.
+// Leaves: hits and occlusion. Embree stays behind this header.
+#pragma once
+
+#include <memory>
+
+#include "ajar/scene/scene.h"
+
+namespace ajar {
+
+/// Ray-tracing structure over a scene, which must outlive it and keep its shapes and meshes unchanged. Safe to query
+/// from many threads.
+class Accel {
+ public:
+  explicit Accel(const Scene& scene);  ///< throws Error when the ray tracer refuses (memory)
+  ~Accel();
+  Accel(Accel&&) noexcept;
+  Accel& operator=(Accel&&) noexcept;
+
+  /// Nearest hit with t in (t_min, t_max); hit is written only when there is one.
+  bool intersect(const Vec3& o, const Vec3& d, float t_min, float t_max, Hit& hit) const;
+  /// Whether anything lies on o + t d, t in (0, t_max).
+  bool occluded(const Vec3& o, const Vec3& d, float t_max) const;
+  /// Bytes held by the structure.
+  size_t bytes() const;
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+  void* top_ = nullptr;  // the top-level scene, one indirection closer for the hot path
+  uint32_t first_instance_ = 0;
+};
+
+}  // namespace ajar

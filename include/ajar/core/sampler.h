@@ -1,0 +1,82 @@
+// Enters: seed, side, path and pass numbers.
+// Leaves: numbers in [0,1), a pure function of those and of the dimension: the same for any number of threads.
+#pragma once
+
+#include "ajar/core/vec.h"
+
+namespace ajar {
+
+/// Strong 64-bit mixing (splitmix64's finaliser, Steele et al. 2014).
+inline uint64_t mix64(uint64_t x) {
+  x += 0x9e3779b97f4a7c15ull;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
+  return x ^ (x >> 31);
+}
+inline uint64_t hash(uint64_t a, uint64_t b) { return mix64(a ^ mix64(b)); }
+
+enum class Side : uint8_t { camera, light };
+enum class SamplerKind : uint8_t { sobol, independent };
+
+inline uint32_t reverse_bits(uint32_t x) {
+  x = __builtin_bswap32(x);
+  x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
+  x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
+  return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
+}
+
+/// Owen scrambling of a bit-reversed number by hashing (Laine and Karras 2011, constants of Burley 2020).
+inline uint32_t laine_karras(uint32_t x, uint32_t seed) {
+  x += seed;
+  x ^= x * 0x6c50b47cu;
+  x ^= x * 0xb82f1e52u;
+  x ^= x * 0xc7afe638u;
+  x ^= x * 0x8d22f6e6u;
+  return x;
+}
+
+/// Second dimension of Sobol's (0,2)-sequence, bit-reversed: the Pascal matrix modulo 2 applied to the index.
+inline uint32_t sobol_second_reversed(uint32_t i) {
+  i ^= (i & 0xaaaaaaaau) >> 1;
+  i ^= (i & 0xccccccccu) >> 2;
+  i ^= (i & 0xf0f0f0f0u) >> 4;
+  i ^= (i & 0xff00ff00u) >> 8;
+  i ^= (i & 0xffff0000u) >> 16;
+  return i;
+}
+
+inline float to_unit(uint32_t bits) { return std::min(float(bits) * 0x1p-32f, one_minus_epsilon); }
+
+/// Pairs of dimensions that get Sobol points; later ones are deep bounces, whose integrand is so rough that independent numbers leave
+/// the same error for a third of the time (docs/results.md).
+inline constexpr uint32_t sobol_pairs = 12;
+
+/// Owen-scrambled Sobol points in independently shuffled pairs of dimensions (padding, Burley 2020), one sequence per path
+/// number and side; the index runs over passes. Or independent numbers, for comparison.
+struct Sampler {
+  uint64_t key = 0;     ///< of (seed, side, path)
+  uint32_t index = 0;   ///< pass
+  uint32_t pair = 0;    ///< dimensions are handed out in pairs
+  SamplerKind kind = SamplerKind::sobol;
+
+  Vec2 next2() {
+    const uint64_t stream = key + 0x9e3779b97f4a7c15ull * ++pair;
+    if (kind == SamplerKind::independent || pair > sobol_pairs) {
+      const uint64_t r = mix64(stream + 0xd1342543de82ef95ull * index);
+      return {to_unit(uint32_t(r)), to_unit(uint32_t(r >> 32))};
+    }
+    const uint64_t h = mix64(stream);
+    // Shuffle the index in nested uniform blocks, so that pairs are independent of each other yet each stays a (0,2)-sequence.
+    const uint32_t shuffled = reverse_bits(laine_karras(reverse_bits(index), uint32_t(h) ^ 0x5bd1e995u));
+    const uint32_t x = laine_karras(shuffled, uint32_t(h >> 32));
+    const uint32_t y = laine_karras(sobol_second_reversed(shuffled), uint32_t(h));
+    return {to_unit(reverse_bits(x)), to_unit(reverse_bits(y))};
+  }
+  float next1() { return next2().x; }
+};
+
+inline Sampler make_sampler(SamplerKind kind, uint64_t seed, Side side, uint64_t path, uint32_t pass) {
+  return {hash(hash(seed, uint64_t(side) + 1), path), pass, 0, kind};
+}
+
+}  // namespace ajar

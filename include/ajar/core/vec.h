@@ -1,0 +1,37 @@
+// Enters: nothing.
+// Leaves: the vector, matrix and colour types of the house, and the few operations on them that GLM lacks.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
+#include <numbers>
+
+namespace ajar {
+
+using Vec2 = glm::vec2;
+using Vec3 = glm::vec3;
+using Vec4 = glm::vec4;
+using Mat3 = glm::mat3;
+using Mat4 = glm::mat4;
+using Rgb = glm::vec3;  ///< Linear RGB with the sRGB / Rec. 709 primaries; radiometric unit as the name says.
+
+inline constexpr float pi = std::numbers::pi_v<float>;
+inline constexpr float inv_pi = std::numbers::inv_pi_v<float>;
+inline constexpr float infinity = std::numeric_limits<float>::infinity();
+inline constexpr float one_minus_epsilon = 0x1.fffffep-1f;
+
+inline float sqr(float x) { return x * x; }
+inline float length2(const Vec3& v) { return glm::dot(v, v); }
+inline float max_component(const Vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
+inline float max_abs(const Vec3& v) { return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z))); }
+inline bool is_black(const Rgb& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
+inline bool is_finite(const Vec3& v) { return std::isfinite(v.x + v.y + v.z); }
+inline float safe_sqrt(float x) { return std::sqrt(std::max(x, 0.0f)); }
+
+/// Relative luminance of linear Rec. 709 RGB (ITU-R BT.709).
+inline float luminance(const Rgb& c) { return 0.212671f * c.x + 0.715160f * c.y + 0.072169f * c.z; }
+
+}  // namespace ajar

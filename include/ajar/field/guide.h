@@ -1,0 +1,48 @@
+// Enters: a bsdf at a point (later also the point's cells of Q and W).
+// Leaves: the one seam through which a direction is sampled or its density evaluated, for camera and light subpaths
+// alike.
+#pragma once
+
+#include "ajar/scene/bsdf.h"
+#include "ajar/scene/geometry.h"
+
+namespace ajar {
+
+/// Everything that scatters at one vertex. Built once per vertex by make_guide; world directions, unit, away from the
+/// surface. mix is the share g of the learned field in M5; 0 leaves the bsdf alone and costs nothing.
+struct Guide {
+  Frame frame;       ///< shading frame, turned as twosided, bump and normal maps asked
+  Vec3 ng{0, 0, 1};  ///< geometric normal on the shading normal's side
+  Vec3 wo{0};        ///< world direction to the previous vertex
+  Vec3 wo_local{0};
+  float adjoint = 1;     ///< |wo.ns| / |wo.ng|: half of the shading-normal correction (Veach 1997, equation 5.19)
+  bool bent = false;     ///< the shading normal differs from the geometric one
+  bool blocked = false;  ///< the normals disagree about the side of wo: nothing scatters
+  float mix = 0;
+  Bsdf bsdf;
+};
+
+/// f_cos is f |cos(ns, wi)|, with the shading-normal correction where Mode is importance; densities per solid angle.
+struct GuideEval {
+  Rgb f_cos{0};
+  float pdf = 0;
+  float pdf_reverse = 0;
+};
+
+struct GuideSample {
+  Vec3 wi{0};     ///< world, unit
+  Rgb weight{0};  ///< f_cos / pdf, already divided
+  float pdf = 0;  ///< solid angle; discrete probability for a delta event
+  float pdf_reverse = 0;
+  float eta = 1;
+  bool delta = false;
+};
+
+/// Resolves the material at the surface for a viewer in direction wo.
+void make_guide(const Scene& scene, Surface surface, const Vec3& wo, Guide& out);
+/// Whether a direction that is not a delta event can leave here.
+inline bool connectable(const Guide& guide) { return guide.bsdf.has_smooth && !guide.blocked; }
+GuideEval evaluate(const Guide& guide, const Vec3& wi, Mode mode);
+bool sample(const Guide& guide, float u_lobe, const Vec2& u, Mode mode, GuideSample& out);
+
+}  // namespace ajar

@@ -1,0 +1,56 @@
+// Enters: samples of a pass, one per pixel, and splats.
+// Leaves: the running estimate with its variance. A pass is one sample of every pixel and as many light subpaths.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "ajar/film/picture.h"
+#include "ajar/scene/camera.h"
+#include "ajar/scene/filter.h"
+
+namespace ajar {
+
+/// What a light subpath leaves on the film: value is not yet divided by the number of light subpaths; raster in pixels
+/// of the full image.
+struct Splat {
+  Vec2 raster{0};
+  Rgb value{0};
+};
+
+/// Estimate of every pixel of the crop window, rows from the top. Sums are over finished passes; the pass at work
+/// stands apart, so that an interrupted render can be developed, or continued to the same bytes.
+struct Film {
+  int x0 = 0, y0 = 0, width = 0, height = 0;
+  Filter filter;
+  bool splats = false;             ///< whether light subpaths reach this film at all
+  std::vector<Rgb> camera, splat;  ///< the pass at work
+  std::vector<glm::dvec3> camera_sum, splat_sum;
+  std::vector<glm::dvec3> square_sum;  ///< of (camera + splat) per pass
+  uint32_t passes = 0;                 ///< finished
+  uint32_t chunks = 0;                 ///< of the pass at work that are done
+
+  size_t pixels() const { return size_t(width) * size_t(height); }
+};
+
+/// Pixels are traced in square tiles, the unit of parallel work; chunk i is tile i in rows.
+inline constexpr int tile = 16;
+inline int tiles_x(const Film& film) { return (film.width + tile - 1) / tile; }
+inline uint32_t chunk_count(const Film& film) {
+  return uint32_t(tiles_x(film)) * uint32_t((film.height + tile - 1) / tile);
+}
+
+Film make_film(const Camera& camera, const Filter& filter, bool splats);
+/// Adds the splats of consecutive chunks, in their order, filtered. The result does not depend on threads.
+void merge(Film& film, const std::vector<std::vector<Splat>>& chunks);
+/// Closes the pass at work.
+void finish_pass(Film& film);
+/// Linear RGB estimate; includes the chunks of the pass at work that are done.
+Picture develop(const Film& film);
+/// Variance of the estimate per pixel and channel, from the spread of the passes; zero before the second pass.
+Picture variance(const Film& film);
+/// Estimated relMSE of the image: mean over pixels and channels of variance / (estimate^2 + 0.01). Infinite before the
+/// second pass.
+double estimated_error(const Film& film);
+
+}  // namespace ajar

@@ -1,0 +1,48 @@
+// Enters: pixels with named channels, metadata.
+// Leaves: EXR and PNG files, written aside and renamed; and what such files hold.
+#pragma once
+
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "ajar/core/vec.h"
+
+namespace ajar {
+
+/// Pixels in rows from the top, channels interleaved: pixels[(y * width + x) * channels() + channel]. Linear,
+/// scene-referred.
+struct Picture {
+  int width = 0, height = 0;
+  std::vector<std::string> names;  ///< "R", "G", "B", "Albedo.R", "N.X", "Variance.R", ...
+  std::vector<float> pixels;
+
+  int channels() const { return int(names.size()); }
+};
+
+using Metadata = std::map<std::string, std::variant<std::string, double>>;
+
+/// Writes channels and metadata ("ajar:seed" ..., names as given) to an OpenEXR file, ZIP-compressed, float or half;
+/// the same arguments give the same bytes. half: a channel that holds a finite value beyond the range of half (65504)
+/// stays float, so that nothing turns into infinity. Throws Error; a failure leaves no file, and an older one as it
+/// was.
+void write_exr(const std::string& path, const Picture& picture, const Metadata& metadata, bool half);
+/// Writes the first three channels (or, of fewer, the first as grey) to an 8-bit PNG by the fixed tone curve of
+/// docs/notation.md; exposure in stops. Throws Error, also where such a channel holds NaN.
+void write_png(const std::string& path, const Picture& picture, float exposure = 0);
+/// Reads any image that OpenImageIO reads (of several parts the first); integer files are decoded from sRGB, except
+/// alpha and where the file says that it is linear. The picture is the file's display window: black where the file's
+/// data window does not reach, without what lies outside. Channels come in the file's order as OpenImageIO gives it (R,
+/// G, B, A first). NaN and infinity stay. Throws Error.
+Picture read_picture(const std::string& path);
+/// The file's attributes: single numbers as double, everything else as text. Throws Error.
+Metadata read_metadata(const std::string& path);
+/// The same pixels with the named channels only, in that order; throws Error where one is missing.
+Picture select(const Picture& picture, const std::vector<std::string>& names);
+/// The part of width x height pixels whose top left pixel is (x, y); throws Error where it does not lie in the picture.
+Picture crop(const Picture& picture, int x, int y, int width, int height);
+/// Writes text aside and renames. Throws Error.
+void write_text(const std::string& path, const std::string& text);
+
+}  // namespace ajar

@@ -1,0 +1,31 @@
+// Enters: contributions labelled with their strategy (s, t).
+// Leaves: one image per strategy, raw and weighted (Veach 1997, figure 10.2).
+#pragma once
+
+#include <map>
+
+#include "ajar/film/film.h"
+
+namespace ajar {
+
+/// A contribution of the strategy with s light and t camera vertices. For t = 1 raster is where it lands and the values
+/// are still to be divided by the number of light subpaths; else raster is its pixel in the crop window.
+struct Strategy {
+  int s = 0, t = 0;
+  Vec2 raster{0};
+  Rgb raw{0}, weighted{0};
+};
+
+struct Pyramid {
+  struct Layer {
+    std::vector<glm::dvec3> raw, weighted;  ///< sums over passes
+  };
+  std::map<std::pair<int, int>, Layer> layers;
+};
+
+/// Adds the contributions of consecutive chunks in their order.
+void merge(Pyramid& pyramid, const Film& film, const std::vector<std::vector<Strategy>>& chunks);
+/// Writes DIR/s1t2.exr ... (weighted) and DIR/s1t2-raw.exr ...; the weighted ones add up to the image. Throws Error.
+void write_pyramid(const Pyramid& pyramid, const Film& film, const std::string& folder);
+
+}  // namespace ajar

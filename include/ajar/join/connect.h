@@ -1,0 +1,40 @@
+// Enters: a light subpath and a camera subpath.
+// Leaves: candidates: one strategy's contribution before visibility, the segment to test, and the ends for its MIS
+// weight.
+#pragma once
+
+#include "ajar/accel/accel.h"
+#include "ajar/core/sampler.h"
+#include "ajar/join/mis.h"
+#include "ajar/path/walk.h"
+
+namespace ajar {
+
+/// One way to join two subpaths. value is the contribution to the pixel (or the film, for t = 1, per unit of the filter
+/// and light path), divided by all densities, without visibility and weight.
+struct Candidate {
+  Rgb value{0};
+  Vec3 o{0}, d{0};  ///< the segment o + t d, t in (0, t_max)
+  float t_max = 1;
+  End light, camera;
+  Shares shares;
+  Vec2 raster{0};  ///< t = 1: where it lands
+};
+
+/// s = 0: the camera subpath's last vertex is on a light. surface is that of the vertex.
+bool join_hit(const Scene& scene, const Subpath& camera, const Surface& surface, Candidate& out);
+/// s = 0: the camera subpath left the scene in the walk's direction; one infinite light.
+bool join_escape(const Scene& scene, uint32_t light, const Subpath& camera, const Walk& walk, Candidate& out);
+/// s = 1: next-event estimation at the camera subpath's vertex t - 1. light_paths as in WalkOptions, also below.
+bool join_light(const Scene& scene, Sampler& sampler, const Subpath& camera, int t, double light_paths, Candidate& out);
+/// s >= 2, t >= 2: the vertices s - 1 and t - 1. share is the light walk's first_share.
+bool join_vertices(const Subpath& light, int s, double share, const Subpath& camera, int t, double light_paths,
+                   Candidate& out);
+/// t = 1: the light subpath's vertex s - 1 >= 0 and the lens.
+bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int s, double share, double light_paths,
+                 Candidate& out);
+
+bool visible(const Accel& accel, const Candidate& candidate);
+inline double weight(Heuristic h, const Candidate& c) { return mis_weight(h, c.light, c.camera, c.shares); }
+
+}  // namespace ajar

@@ -1,0 +1,27 @@
+// Enters: densities of a subpath's vertices as either side would have generated them.
+// Leaves: the running sum over strategies with which MIS weighs a join in constant time. Pure functions.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+namespace ajar {
+
+enum class Heuristic : uint8_t { balance, power };  ///< power: exponent 2 (Veach 1997, section 9.2.3)
+
+/// Ratio of densities under the heuristic.
+inline double raise(Heuristic h, double ratio) { return h == Heuristic::power ? ratio * ratio : ratio; }
+/// Bounded, like the sums below: nothing overflows, and no infinity meets a zero.
+inline constexpr double largest_ratio = 1e150;
+inline double ratio(double other, double own) { return own > 0 ? std::min(largest_ratio, other / own) : 0; }
+
+/// Prefix sum over the strategies that cut a subpath a_0 a_1 .. at or before vertex i (docs/method.md, R2):
+///   S_i = v_i + r_(i-1) S_(i-1)
+/// with r_j = (density of a_j from the other side / from its own), raised, and v_i the share of the strategy that
+/// connects a_(i-1) to a_i: 0 where either event is a delta, else 1, or the strategy's extra density for i = 1
+/// (next-event estimation, splats). S_0 is 1 where a_0 can be hit by a ray, else 0.
+inline double extend(double share, double raised_ratio, double sum_before) {
+  return share + std::min(largest_ratio * largest_ratio, raised_ratio * sum_before);
+}
+
+}  // namespace ajar

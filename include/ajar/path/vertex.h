@@ -1,0 +1,44 @@
+// Enters: hits along a subpath.
+// Leaves: its vertices, compact, in storage that a thread keeps; what joining and MIS need is on the vertex.
+#pragma once
+
+#include <vector>
+
+#include "ajar/field/guide.h"
+
+namespace ajar {
+
+/// A vertex a_i of a subpath. For both sides: "own" is the side that traced it, "before" the vertex nearer to that
+/// side's end. Vertex 0 (the lens, the light's point) uses p, ng, beta, own, delta, infinite and sum alone.
+struct Vertex {
+  Vec3 p{0};
+  float error = 0;      ///< offset for rays that leave here
+  Vec3 ng{0};           ///< geometric normal as the shape has it; zero for a point light
+  float distance2 = 0;  ///< squared, to the vertex before
+  Rgb beta{0};  ///< throughput that arrives here, divided by the densities up to here; vertex 0: emitted over density
+  float back = 0;  ///< solid-angle density here of the direction back times this = area density at the vertex before
+  double own = 0;  ///< area density of this vertex as its own side generated it (solid angle when infinite)
+  double sum = 0;  ///< S of the vertex *before* this one, mis.h (R3)
+  bool delta = false;     ///< the subpath went on from here by a delta event
+  bool infinite = false;  ///< vertex 0: a direction rather than a place
+  uint32_t shape = none;
+  uint32_t instance = none;
+  Guide guide;
+  LightPoint point;  ///< vertex 0 of a light subpath
+};
+
+/// Vertices of one subpath; n of them are in use. The storage is kept from path to path, so that tracing does not
+/// allocate.
+struct Subpath {
+  std::vector<Vertex> vertices = std::vector<Vertex>(32);
+  int n = 0;
+
+  Vertex& add() {
+    if (n == int(vertices.size())) vertices.resize(2 * vertices.size());
+    return vertices[size_t(n++)];
+  }
+  Vertex& operator[](int i) { return vertices[size_t(i)]; }
+  const Vertex& operator[](int i) const { return vertices[size_t(i)]; }
+};
+
+}  // namespace ajar

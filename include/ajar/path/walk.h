@@ -1,0 +1,57 @@
+// Enters: the start of a subpath on the lens or on a light, a sampler.
+// Leaves: the subpath, vertex by vertex, with throughput, densities of both sides and MIS prefix sums.
+#pragma once
+
+#include "ajar/accel/accel.h"
+#include "ajar/core/sampler.h"
+#include "ajar/path/prefix.h"
+#include "ajar/path/vertex.h"
+
+namespace ajar {
+
+/// Counts of one thread; added up at the end.
+struct Counters {
+  uint64_t camera_rays = 0, light_rays = 0, shadow_rays = 0;
+  uint64_t camera_paths = 0, light_paths = 0;
+  uint64_t zero_paths = 0;  ///< camera paths whose pixel sample was black
+
+  Counters& operator+=(const Counters& o);
+};
+
+struct WalkOptions {
+  int max_edges = 1 << 20;  ///< of a whole path from light to camera
+  int roulette_from = 5;    ///< edges that are traced without roulette
+  Heuristic heuristic = Heuristic::power;
+  double light_paths = 1;  ///< light subpaths that splat to the film, for each camera sample of a pixel
+};
+
+/// The ray that will find the next vertex, and what that vertex needs to know about its making.
+struct Walk {
+  Side side = Side::camera;
+  Vec3 o{0}, d{0, 0, 1};
+  float t_min = 0, t_max = infinity;
+  Rgb beta{1};              ///< throughput that the next vertex receives
+  double pdf = 1;           ///< solid-angle density of d; when planar, density per area perpendicular to d
+  bool planar = false;      ///< parallel light from infinity or an orthographic camera: no 1/d^2
+  double other_before = 0;  ///< area density of a_(n-2) as the other side would generate it from a_(n-1)
+  double sum = 0;           ///< S of the vertex that the ray leaves (R2); set by step, also when the ray escapes
+  double first_share = 1;   ///< v_1 of (R2), not raised
+  Rgb survival{1};          ///< throughput since the start, for roulette
+};
+
+/// Starts at the camera: vertex 0 and the ray through a raster position. factor of the hit is set by step.
+void start_camera(const Scene& scene, const WalkOptions& options, const Vec2& raster, const Vec2& lens,
+                  Subpath& subpath, Walk& walk);
+/// Starts at a light; false where there is none or it emits nothing here.
+bool start_light(const Scene& scene, Sampler& sampler, Subpath& subpath, Walk& walk);
+/// Traces the ray and adds the vertex that it hits; false when it escapes. surface is what was hit.
+bool step(const Scene& scene, const Accel& accel, const WalkOptions& options, Subpath& subpath, Walk& walk,
+          Surface& surface);
+/// Samples the direction in which the subpath goes on from its last vertex; false when it ends there.
+bool scatter(const WalkOptions& options, Sampler& sampler, Subpath& subpath, Walk& walk);
+
+/// Density of next-event estimation from x over that of emission for the same point of a light, along unit wi (x to
+/// light).
+double direct_share(const Scene& scene, const LightPoint& point, const Vec3& x, const Vec3& wi, double distance2);
+
+}  // namespace ajar

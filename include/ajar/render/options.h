@@ -1,0 +1,30 @@
+// Enters: what the user asked for.
+// Leaves: options that the pass loop reads, with defaults that suit most scenes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ajar/path/walk.h"
+
+namespace ajar {
+
+struct RenderOptions {
+  std::string integrator = "bdpt";      ///< one of integrator_names()
+  uint32_t spp = 64;                    ///< passes; with a time budget the budget decides
+  double seconds = 0, cpu_seconds = 0;  ///< budgets after loading, wall and of all threads; 0: none
+  uint64_t seed = 0;
+  int threads = 0;         ///< 0: all
+  int max_depth = -1;      ///< edges of a path: 1 sees lights alone; -1: unlimited
+  int roulette_depth = 5;  ///< edges of a subpath that are traced without roulette
+  Heuristic heuristic = Heuristic::power;
+  SamplerKind sampler = SamplerKind::sobol;
+  bool techniques = false;  ///< keep an image of every (s, t)
+};
+
+/// Path depth at which tracing stops even when it is unlimited: no scene needs it, and it bounds memory.
+inline constexpr int deepest = 4096;
+
+std::vector<std::string> integrator_names();
+
+}  // namespace ajar

@@ -1,0 +1,50 @@
+// Enters: a scene, its accelerator, options, a film (new, or from a checkpoint).
+// Leaves: the film after as many passes as the budget allows, with statistics.
+#pragma once
+
+#include <functional>
+
+#include "ajar/film/pyramid.h"
+#include "ajar/render/options.h"
+
+namespace ajar {
+
+struct RenderStats {
+  Counters counters;
+  uint64_t rejected = 0;                ///< values dropped for not being finite and non-negative (law 6)
+  std::vector<std::string> replay;      ///< what replays the first of them
+  double seconds = 0, cpu_seconds = 0;  ///< of tracing, merging included; sums over resumed parts
+};
+
+/// Everything that a render needs in order to go on, and all that it has made.
+struct RenderState {
+  Film film;
+  Pyramid pyramid;  ///< filled when RenderOptions::techniques
+  RenderStats stats;
+};
+
+/// Seen between batches of chunks, a few times a second at most for large images; return false to stop.
+using Monitor = std::function<bool(const RenderState&)>;
+
+/// Throws Error for an unknown integrator.
+RenderState start_render(const Scene& scene, const RenderOptions& options);
+/// Traces until spp or budget is reached or the monitor says stop. Deterministic for spp: the same bytes with any
+/// number of threads, and when stopped and called again with the same state.
+void render(const Scene& scene, const Accel& accel, const RenderOptions& options, RenderState& state,
+            const Monitor& monitor);
+
+/// Saves the state with a key that names scene and options; written aside and renamed. Throws Error.
+void save_checkpoint(const std::string& path, const std::string& key, const RenderState& state);
+/// Fills a state that start_render made for the same scene and options. Throws Error when the file is damaged, of
+/// another version, or of another key.
+void load_checkpoint(const std::string& path, const std::string& key, RenderState& state);
+
+/// First-hit features, averaged over a few jittered samples per pixel: "Albedo.R" ..., "N.X" ... (world shading
+/// normal), "P.X" ... (world position); zero where nothing is hit. Channel names are pbrt's.
+Picture render_features(const Scene& scene, const Accel& accel, uint64_t seed, int samples = 16);
+
+/// Seconds on the wall and of all threads of this process.
+double wall_seconds();
+double process_cpu_seconds();
+
+}  // namespace ajar

@@ -1,0 +1,36 @@
+// Enters: a rough dielectric boundary.
+// Leaves: how much light enters through it from outside, tabulated over the cosine and, where textures vary it, alpha.
+#pragma once
+
+#include "ajar/scene/material.h"
+
+namespace ajar {
+
+inline constexpr int table_cosines = 128;            ///< intervals of the cosine; an entry more than that
+inline constexpr int table_row = table_cosines + 2;  ///< the cosine-weighted mean stands before them
+inline constexpr int table_alphas = 16;              ///< intervals of sqrt(alpha) from 0 to 1, if alpha is textured
+
+/// Linear interpolation in one row.
+inline float table_at(const float* row, float cos) {
+  const float x = std::min(cos, 1.0f) * table_cosines;
+  const int i = std::min(int(x), table_cosines - 1);
+  return row[1 + i] + (row[2 + i] - row[1 + i]) * (x - float(i));
+}
+
+/// A row of Material::entering_table and the position between it and the next.
+struct TableRow {
+  const float* at;
+  float between;
+};
+inline TableRow table_row_of(const Material& m, float alpha) {
+  if (m.entering_table.size() == table_row) return {m.entering_table.data(), 0};
+  const float x = std::sqrt(std::min(alpha, 1.0f)) * table_alphas;
+  const int i = std::min(int(x), table_alphas - 1);
+  return {m.entering_table.data() + i * table_row, x - float(i)};
+}
+
+/// Share of the light from the cosine that a rough boundary lets through, by refraction at visible normals with masking
+/// of the refracted direction: the integral of the transmission part of roughdielectric.
+float rough_transmittance(Microfacet kind, float alpha, float ior, float cos);
+
+}  // namespace ajar

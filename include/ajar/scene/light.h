@@ -1,0 +1,99 @@
+// Enters: light descriptions.
+// Leaves: points on lights with their radiance and densities, for next-event estimation and for emission.
+#pragma once
+
+#include "ajar/core/distribution.h"
+#include "ajar/scene/texture.h"
+
+namespace ajar {
+
+enum class LightKind : uint8_t { area, constant, envmap, point, spot, directional };
+
+struct Light {
+  LightKind kind = LightKind::area;
+  Slot radiance{1.0f};  ///< area, constant: radiance [W/(m^2 sr)]; directional: irradiance on a perpendicular plane;
+                        ///< point, spot: intensity [W/sr]
+  float sampling_weight = 1;    ///< the user's factor on the chance of being chosen
+  uint32_t shape = none;        ///< area: index into Scene::shapes
+  uint32_t environment = none;  ///< envmap: index into Scene::environments
+  Mat4 to_world{1};             ///< envmap, spot: orientation (spot: position too)
+  Mat3 to_local{1};             ///< inverse of to_world's linear part; made by finish
+  Vec3 position{0};             ///< point, spot
+  Vec3 direction{0, 0, 1};      ///< spot, directional: where the light travels to, unit
+  float cos_cutoff = 0;         ///< spot: nothing outside
+  float cos_beam = 1;           ///< spot: full intensity inside; between the two it falls linearly with the angle
+  bool textured = false;        ///< radiance has a texture; made by finish
+};
+
+/// A point of a light. For infinite lights (constant, envmap, directional) p is not a place: n is the direction *of
+/// travel* of the light, from infinity into the scene.
+struct LightPoint {
+  Vec3 p{0};
+  float error = 0;
+  Vec3 n{0};   ///< area: unit normal of the emitting side; infinite: direction of travel; point, spot: zero
+  Vec2 uv{0};  ///< area: of the shape (from sample_direct on spheres only when the light is textured)
+  uint32_t light = none;
+  uint32_t prim = 0;
+  bool infinite = false;
+  bool delta_position = false;   ///< point, spot: a ray cannot hit it
+  bool delta_direction = false;  ///< directional: a ray cannot find it
+};
+
+/// Next-event estimation: light as seen from a reference point.
+struct DirectSample {
+  LightPoint point;
+  Vec3 wi{0};          ///< from the reference point to the light, unit
+  float distance = 0;  ///< infinity for infinite lights
+  Rgb radiance{0};     ///< arriving, unoccluded; with 1/d^2 for point and spot lights; NOT divided by pdf
+  float pdf = 0;       ///< solid-angle density at the reference point [1/sr]; 1 for deltas; without the choice of light
+};
+
+/// Emission: the start of a light subpath.
+struct EmissionSample {
+  LightPoint point;         ///< infinite: p is a point on the disk from which the ray starts, outside the scene
+  Vec3 direction{0};        ///< of travel, unit
+  Rgb radiance{0};          ///< NOT divided by any pdf; point, spot: intensity; directional: irradiance
+  float pdf_position = 0;   ///< area: per area; infinite: per area of the disk across the scene; point, spot: 1
+  float pdf_direction = 0;  ///< per solid angle; 1 for directional
+};
+
+/// One light seen from x. u in [0,1)^2. False where this sample gives x nothing. Spheres seen from outside are sampled
+/// by the cone that they fill, other shapes by area.
+bool sample_direct(const Scene& scene, uint32_t light, const Vec3& x, const Vec2& u, DirectSample& out);
+/// Solid-angle density with which sample_direct at x would have found this point of this light along unit wi; 0 for
+/// deltas.
+float pdf_direct(const Scene& scene, const LightPoint& point, const Vec3& x, const Vec3& wi);
+/// Emission of one light. u_position, u_direction in [0,1)^2.
+bool sample_emission(const Scene& scene, uint32_t light, const Vec2& u_position, const Vec2& u_direction,
+                     EmissionSample& out);
+/// Densities with which sample_emission would have started here in this direction of travel.
+struct EmissionPdf {
+  float position = 0, direction = 0;
+};
+EmissionPdf pdf_emission(const Scene& scene, const LightPoint& point, const Vec3& direction);
+
+/// Radiance that leaves an emissive surface point towards unit wo; black on the back (emission is one-sided, ng's
+/// side).
+Rgb emitted(const Scene& scene, const Surface& at, const Vec3& wo);
+/// The light point of an emissive surface that a ray hit; light == none where the surface does not emit.
+LightPoint light_point(const Scene& scene, const Surface& at);
+/// Radiance of one infinite light arriving from world direction w (unit, towards infinity); black for directional.
+Rgb environment(const Scene& scene, uint32_t light, const Vec3& w);
+/// The light point of an infinite light that an escaping ray of direction w found.
+LightPoint light_point(const Scene& scene, uint32_t light, const Vec3& w);
+/// Emitted power [W] used to choose among lights; infinite lights with the scene's bounding sphere.
+float power(const Scene& scene, uint32_t light);
+
+/// Image map over the sphere, bilinear. In the light's own space y is up and the direction (sin phi sin theta, cos
+/// theta, -cos phi sin theta) looks up u = phi / (2 pi), v = theta / pi, v = 0 on top: Mitsuba's latitude-longitude
+/// convention. Directions are drawn from the bilinear interpolation of luminance times sin(theta) at the texels:
+/// positive wherever the map is.
+struct Environment {
+  uint32_t image = none;
+  float scale = 1;
+  Distribution2D table;  ///< made by make_environment: the share of each texel
+};
+/// Throws Error where a texel is negative or not finite.
+Environment make_environment(const Scene& scene, uint32_t image, float scale);
+
+}  // namespace ajar

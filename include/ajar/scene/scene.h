@@ -1,0 +1,83 @@
+// Enters: what the loader or a builder made.
+// Leaves: the whole scene as data: arrays that name each other by index.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "ajar/core/distribution.h"
+#include "ajar/scene/camera.h"
+#include "ajar/scene/filter.h"
+#include "ajar/scene/light.h"
+#include "ajar/scene/material.h"
+
+namespace ajar {
+
+/// Triangles in world space (in the group's space for shapes of a shapegroup). normals, uvs and attributes may be
+/// empty.
+struct Mesh {
+  std::vector<Vec3> positions;
+  std::vector<Vec3> normals;  ///< unit; empty: face normals
+  std::vector<Vec2> uvs;
+  std::vector<glm::uvec3> triangles;
+  std::vector<Rgb> colors;  ///< per vertex, for mesh_attribute textures
+  Distribution area;        ///< over triangles; filled by finish for meshes that emit
+  double total_area = 0;
+};
+
+enum class ShapeKind : uint8_t { mesh, sphere, disk, cylinder };
+
+/// Quadrics are unit objects under to_world: sphere of radius 1 at 0; disk of radius 1 in z = 0, normal +z;
+/// cylinder of radius 1 about z from 0 to 1, open, normal outwards. sphere: to_world is a similarity.
+struct Shape {
+  ShapeKind kind = ShapeKind::mesh;
+  bool flip = false;  ///< turns ng (meshes were turned by the loader)
+  uint32_t mesh = none;
+  uint32_t material = 0;
+  uint32_t light = none;
+  uint32_t group = none;  ///< belongs to a shapegroup: seen only through instances
+  Mat4 to_world{1};
+  Mat4 to_object{1};
+  std::string name;  ///< for messages
+};
+
+struct Instance {
+  uint32_t group = 0;
+  Mat4 to_world{1};
+  Mat4 to_object{1};
+};
+
+/// What the file says about rendering; the command line overrules it.
+struct Hints {
+  std::string integrator;  ///< as named by the file
+  int max_depth = -1;      ///< edges, -1 unlimited
+  int spp = 0;             ///< 0: not said
+};
+
+struct Scene {
+  std::vector<Image> images;
+  std::vector<Texture> textures;
+  std::vector<Material> materials;
+  std::vector<Mesh> meshes;
+  std::vector<Shape> shapes;
+  std::vector<Instance> instances;
+  uint32_t groups = 0;  ///< number of shapegroups
+  std::vector<Environment> environments;
+  std::vector<Light> lights;
+  Camera camera;
+  Filter filter;
+  Hints hints;
+  std::vector<std::string> notes;  ///< what the loader wants the user to know, one line each
+
+  // made by finish()
+  Distribution light_choice;              ///< by power * sampling_weight
+  std::vector<uint32_t> infinite_lights;  ///< constant and envmap: those an escaping ray finds
+  Vec3 center{0};                         ///< bounding sphere of everything that can be hit
+  float radius = 1;
+};
+
+/// Computes what is derived (areas, bounds, light choice); call once after building or changing a scene.
+void finish(Scene& scene);
+
+}  // namespace ajar

@@ -1,0 +1,82 @@
+// Enters: images and texture descriptions.
+// Leaves: slots (a constant or a texture) and their values at a surface point.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ajar/scene/surface.h"
+
+namespace ajar {
+
+struct Scene;
+
+/// A colour or a number of a material or light: a constant, or a texture that replaces it.
+struct Slot {
+  Rgb value{0};
+  uint32_t texture = none;
+
+  Slot() = default;
+  Slot(float grey) : value(grey) {}
+  Slot(const Rgb& rgb) : value(rgb) {}
+};
+
+/// Which numbers of an image a texture shows: its colour, or one channel as grey. alpha of an image without it is 1.
+enum class Channel : uint8_t { color, red, green, blue, alpha };
+
+/// Decoded image, row 0 on top. 8-bit images stay 8-bit with a decoding table (sRGB or gamma to linear); others are
+/// float, linear.
+struct Image {
+  int width = 0, height = 0, channels = 0;  ///< channels 1 or 3 (alpha is kept apart)
+  std::vector<uint8_t> bytes;               ///< height*width*channels, or empty
+  std::vector<float> floats;                ///< height*width*channels, or empty
+  std::vector<uint8_t> alpha;               ///< height*width, or empty
+  float decode[256] = {};                   ///< value of each byte, linear
+  std::string name;                         ///< for messages
+};
+
+/// One texel, 0 <= x < width, 0 <= y < height.
+inline Rgb texel(const Image& image, int x, int y, Channel channel = Channel::color) {
+  const size_t pixel = size_t(y) * size_t(image.width) + size_t(x);
+  if (channel == Channel::alpha) return Rgb(image.alpha.empty() ? 1.0f : float(image.alpha[pixel]) / 255);
+  const size_t i = pixel * size_t(image.channels);
+  const auto value = [&](size_t c) {
+    return image.bytes.empty() ? image.floats[i + c] : image.decode[image.bytes[i + c]];
+  };
+  if (image.channels == 1) return Rgb(value(0));
+  if (channel != Channel::color) return Rgb(value(size_t(channel) - size_t(Channel::red)));
+  return {value(0), value(1), value(2)};
+}
+
+enum class Wrap : uint8_t { repeat, mirror, clamp, zero, one };
+enum class TextureKind : uint8_t { bitmap, checkerboard, scale, mesh_attribute };  ///< mesh_attribute: Mesh::colors
+
+struct Texture {
+  TextureKind kind = TextureKind::bitmap;
+  Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+  Channel channel = Channel::color;
+  bool nearest = false;
+  bool flip_v = true;     ///< bitmap: v = 0 is the lowest row of the image
+  uint32_t image = none;  ///< bitmap: index into Scene::images
+  Mat3 to_uv{1};          ///< applied to (u, v, 1) before the look-up
+  Slot color0{0.4f};      ///< checkerboard, where floor(2u) + floor(2v) is even; scale: the nested slot
+  Slot color1{0.2f};      ///< checkerboard, elsewhere; scale: the factor
+};
+
+/// Value of a slot at a surface point; linear RGB. Bilinear unless the texture says nearest.
+Rgb eval(const Scene& scene, const Slot& slot, const Surface& at);
+/// The same reduced to one number: the only channel, or the luminance of three.
+float eval_scalar(const Scene& scene, const Slot& slot, const Surface& at);
+/// Derivative of eval_scalar to u and v at the point (for bump maps), per unit of the mesh's uv; bitmaps as if
+/// bilinear.
+Vec2 eval_gradient(const Scene& scene, const Slot& slot, const Surface& at);
+/// Mean value over the unit square of uv; exact for constants and bitmaps that fill it.
+Rgb mean(const Scene& scene, const Slot& slot);
+
+/// Reads any image that OpenImageIO reads. raw: numbers as they stand; gamma 0: by the file's own colour space
+/// (8- and 16-bit sRGB, float linear), else the given exponent. Files with alpha keep colours that are not multiplied
+/// by it as they stand. Throws Error where the file is missing, damaged or larger than 2 GiB decoded, and where a texel
+/// is not finite or (unless raw) negative.
+Image load_image(const std::string& path, bool raw, float gamma = 0);
+
+}  // namespace ajar

@@ -1,0 +1,212 @@
+#include "ajar/accel/accel.h"
+
+#include <embree3/rtcore.h>
+#include <fmt/format.h>
+
+#include <atomic>
+
+#include "ajar/core/error.h"
+#include "quadric.h"
+
+namespace ajar {
+namespace {
+
+struct Quadric {
+  const Shape* shape;
+  uint32_t id;
+};
+
+struct DeviceRelease {
+  void operator()(RTCDevice d) const { rtcReleaseDevice(d); }
+};
+struct SceneRelease {
+  void operator()(RTCScene s) const { rtcReleaseScene(s); }
+};
+using Device = std::unique_ptr<std::remove_pointer_t<RTCDevice>, DeviceRelease>;
+using EmbreeScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, SceneRelease>;
+
+void quadric_bounds(const RTCBoundsFunctionArguments* args) {
+  const Shape& shape = *static_cast<const Quadric*>(args->geometryUserPtr)->shape;
+  // Axis-aligned box of the transformed unit object's box: generous, never too small.
+  const float z0 = shape.kind == ShapeKind::sphere ? -1.0f : 0.0f, z1 = shape.kind == ShapeKind::disk ? 0.0f : 1.0f;
+  Vec3 lo(infinity), hi(-infinity);
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 p = shape.to_world * Vec4(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? z1 : z0, 1);
+    lo = glm::min(lo, p);
+    hi = glm::max(hi, p);
+  }
+  const Vec3 pad = (glm::abs(lo) + glm::abs(hi)) * 1e-6f;
+  RTCBounds& b = *args->bounds_o;
+  b.lower_x = lo.x - pad.x, b.lower_y = lo.y - pad.y, b.lower_z = lo.z - pad.z;
+  b.upper_x = hi.x + pad.x, b.upper_y = hi.y + pad.y, b.upper_z = hi.z + pad.z;
+}
+
+bool hit_quadric(const Shape& shape, const RTCRay& ray, double& t, Vec2& uv) {
+  const glm::dmat4 m(shape.to_object);
+  const glm::dvec3 o = m * glm::dvec4(ray.org_x, ray.org_y, ray.org_z, 1),
+                   d = m * glm::dvec4(ray.dir_x, ray.dir_y, ray.dir_z, 0);
+  return intersect_quadric(shape.kind, o, d, ray.tnear, ray.tfar, t, uv);
+}
+
+void quadric_intersect(const RTCIntersectFunctionNArguments* args) {
+  if (!args->valid[0]) return;
+  const auto& quadric = *static_cast<const Quadric*>(args->geometryUserPtr);
+  auto& rayhit = *reinterpret_cast<RTCRayHit*>(args->rayhit);
+  double t;
+  Vec2 uv;
+  if (!hit_quadric(*quadric.shape, rayhit.ray, t, uv)) return;
+  rayhit.ray.tfar = float(t);
+  rayhit.hit.u = uv.x, rayhit.hit.v = uv.y;
+  rayhit.hit.primID = 0, rayhit.hit.geomID = quadric.id;
+  rayhit.hit.instID[0] = args->context->instID[0];
+}
+
+void quadric_occluded(const RTCOccludedFunctionNArguments* args) {
+  if (!args->valid[0]) return;
+  auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
+  double t;
+  Vec2 uv;
+  if (hit_quadric(*static_cast<const Quadric*>(args->geometryUserPtr)->shape, ray, t, uv)) ray.tfar = -infinity;
+}
+
+}  // namespace
+
+struct Accel::Data {
+  Device device;
+  EmbreeScene top;
+  std::vector<EmbreeScene> groups;
+  std::vector<Quadric> quadrics;
+  std::atomic<int64_t> bytes{0};
+};
+
+namespace {
+
+[[noreturn]] void refuse(RTCDevice device, const char* what) {
+  throw Error(fmt::format("ray tracer: {} (error {}); is there enough memory?", what, int(rtcGetDeviceError(device))));
+}
+
+EmbreeScene new_scene(RTCDevice device) {
+  EmbreeScene scene(rtcNewScene(device));
+  // Watertight traversal: a door that leaks along its edges would ruin what Ajar is for.
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
+  return scene;
+}
+
+RTCGeometry mesh_geometry(RTCDevice device, const Mesh& mesh) {
+  RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  // Copies: Embree wants padding after the last vertex, which a vector does not promise.
+  auto* p = static_cast<Vec3*>(
+      rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), mesh.positions.size()));
+  auto* t = static_cast<glm::uvec3*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                             sizeof(glm::uvec3), mesh.triangles.size()));
+  if (!p || !t) refuse(device, "no memory for a mesh");
+  std::copy(mesh.positions.begin(), mesh.positions.end(), p);
+  std::copy(mesh.triangles.begin(), mesh.triangles.end(), t);
+  return g;
+}
+
+RTCGeometry quadric_geometry(RTCDevice device, const Quadric* quadric) {
+  RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(g, 1);
+  rtcSetGeometryUserData(g, const_cast<Quadric*>(quadric));
+  rtcSetGeometryBoundsFunction(g, quadric_bounds, nullptr);
+  rtcSetGeometryIntersectFunction(g, quadric_intersect);
+  rtcSetGeometryOccludedFunction(g, quadric_occluded);
+  return g;
+}
+
+RTCGeometry instance_geometry(RTCDevice device, RTCScene group, const Instance& instance) {
+  RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+  rtcSetGeometryInstancedScene(g, group);
+  rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &instance.to_world[0][0]);
+  return g;
+}
+
+void attach(RTCScene scene, RTCGeometry g, uint32_t id) {
+  rtcCommitGeometry(g);
+  rtcAttachGeometryByID(scene, g, id);
+  rtcReleaseGeometry(g);
+}
+
+bool count_bytes(void* data, ssize_t bytes, bool) {
+  static_cast<std::atomic<int64_t>*>(data)->fetch_add(bytes, std::memory_order_relaxed);
+  return true;
+}
+
+}  // namespace
+
+Accel::Accel(const Scene& scene) : data_(std::make_unique<Data>()), first_instance_(uint32_t(scene.shapes.size())) {
+  Data& data = *data_;
+  data.device.reset(rtcNewDevice(nullptr));
+  if (!data.device) refuse(nullptr, "cannot start");
+  RTCDevice device = data.device.get();
+  rtcSetDeviceMemoryMonitorFunction(device, count_bytes, &data.bytes);
+  data.top = new_scene(device);
+  for (uint32_t i = 0; i < scene.groups; ++i) data.groups.push_back(new_scene(device));
+  data.quadrics.reserve(scene.shapes.size());
+  for (uint32_t i = 0; i < scene.shapes.size(); ++i) {
+    const Shape& shape = scene.shapes[i];
+    RTCScene into = shape.group == none ? data.top.get() : data.groups[shape.group].get();
+    if (shape.kind == ShapeKind::mesh) {
+      if (!scene.meshes[shape.mesh].triangles.empty()) attach(into, mesh_geometry(device, scene.meshes[shape.mesh]), i);
+    } else {
+      data.quadrics.push_back({&shape, i});
+      attach(into, quadric_geometry(device, &data.quadrics.back()), i);
+    }
+  }
+  for (auto& group : data.groups) rtcCommitScene(group.get());
+  for (uint32_t i = 0; i < scene.instances.size(); ++i)
+    attach(data.top.get(), instance_geometry(device, data.groups[scene.instances[i].group].get(), scene.instances[i]),
+           first_instance_ + i);
+  rtcCommitScene(data.top.get());
+  if (rtcGetDeviceError(device) != RTC_ERROR_NONE) refuse(device, "cannot build");
+  top_ = data.top.get();
+}
+
+Accel::~Accel() = default;
+Accel::Accel(Accel&&) noexcept = default;
+Accel& Accel::operator=(Accel&&) noexcept = default;
+
+size_t Accel::bytes() const { return size_t(std::max<int64_t>(data_->bytes.load(), 0)); }
+
+namespace {
+
+RTCRay make_ray(const Vec3& o, const Vec3& d, float t_min, float t_max) {
+  RTCRay ray;
+  ray.org_x = o.x, ray.org_y = o.y, ray.org_z = o.z;
+  ray.dir_x = d.x, ray.dir_y = d.y, ray.dir_z = d.z;
+  ray.tnear = t_min, ray.tfar = t_max, ray.time = 0;
+  ray.mask = ~0u, ray.id = 0, ray.flags = 0;
+  return ray;
+}
+
+}  // namespace
+
+bool Accel::intersect(const Vec3& o, const Vec3& d, float t_min, float t_max, Hit& hit) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRayHit r;
+  r.ray = make_ray(o, d, t_min, t_max);
+  r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(static_cast<RTCScene>(top_), &context, &r);
+  if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+  hit.t = r.ray.tfar;
+  hit.shape = r.hit.geomID;
+  hit.prim = r.hit.primID;
+  hit.instance = r.hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? none : r.hit.instID[0] - first_instance_;
+  hit.ng = {r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z};
+  hit.bary = {r.hit.u, r.hit.v};
+  return true;
+}
+
+bool Accel::occluded(const Vec3& o, const Vec3& d, float t_max) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRay ray = make_ray(o, d, 0, t_max);
+  rtcOccluded1(static_cast<RTCScene>(top_), &context, &ray);
+  return ray.tfar < 0;
+}
+
+}  // namespace ajar

@@ -1,0 +1,14 @@
+// Enters: the command line.
+// Leaves: one subcommand each, registered with its options; its callback does the work and throws ajar::Error.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace ajar {
+
+void add_render(CLI::App& app);
+void add_compare(CLI::App& app);
+
+}  // namespace ajar

@@ -1,0 +1,76 @@
+// ajar compare: one JSON line of metrics on standard output, and a picture of the differences on request.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "ajar/core/error.h"
+#include "ajar/report/metrics.h"
+#include "commands.h"
+
+namespace ajar {
+namespace {
+
+struct Arguments {
+  std::string image, reference, variance, diff;
+  std::vector<int> crop;
+};
+
+Picture cropped(Picture picture, const std::string& path, const std::vector<int>& window) {
+  if (window.empty()) return picture;
+  try {
+    return crop(picture, window[0], window[1], window[2], window[3]);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", path, error.what()));
+  }
+}
+
+Picture read_comparable(const std::string& path, const std::vector<int>& window) {
+  Picture picture = cropped(read_picture(path), path, window);
+  require_comparable(picture, path);
+  return picture;
+}
+
+void run(const Arguments& arguments) {
+  Picture image = read_comparable(arguments.image, arguments.crop);
+  const Picture reference = read_comparable(arguments.reference, arguments.crop);
+  if (image.width != reference.width || image.height != reference.height)
+    throw Error(fmt::format(
+        "{}: has {}x{} pixels, but {} has {}x{}; compare images of one size, or parts of them with --crop",
+        arguments.image, image.width, image.height, arguments.reference, reference.width, reference.height));
+  if (!arguments.variance.empty()) {
+    const Picture variance = cropped(read_picture(arguments.variance), arguments.variance, arguments.crop);
+    try {
+      image = with_variance(image, variance);
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}: {}", arguments.variance, error.what()));
+    }
+    require_comparable(image, arguments.variance);
+  }
+  const std::string line = to_json(compare(image, reference)) + "\n";
+  if (!arguments.diff.empty()) write_png(arguments.diff, difference_picture(image, reference));
+  if (std::fwrite(line.data(), 1, line.size(), stdout) != line.size() || std::fflush(stdout) != 0)
+    throw Error("standard output: cannot be written; check where it leads");
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("compare", "Print the difference of two images as one JSON line");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("image", arguments->image, "Image to judge (EXR, or anything that OpenImageIO reads)")
+      ->required();
+  command->add_option("reference", arguments->reference, "Image that is taken for right, of the same size")->required();
+  command->add_option(
+      "--variance", arguments->variance,
+      "Variance of the image's pixel values (channels Variance.R, .G, .B or R, G, B); adds the z-test, as do "
+      "such channels in either image");
+  command->add_option("--crop", arguments->crop, "Compare only this part: X Y WIDTH HEIGHT")->expected(4);
+  command->add_option("--diff", arguments->diff,
+                      "Write a PNG of the signed relative difference: red brighter, blue darker");
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace ajar

@@ -1,0 +1,69 @@
+#include "progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace ajar {
+namespace {
+
+double spp_done(const Film& film) { return film.passes + double(film.chunks) / chunk_count(film); }
+
+double share_done(const RenderOptions& o, const RenderState& state) {
+  double share = 0;
+  if (o.seconds > 0) share = std::max(share, state.stats.seconds / o.seconds);
+  if (o.cpu_seconds > 0) share = std::max(share, state.stats.cpu_seconds / o.cpu_seconds);
+  if (o.seconds <= 0 && o.cpu_seconds <= 0) share = spp_done(state.film) / std::max(1u, o.spp);
+  return std::clamp(share, 0.0, 1.0);
+}
+
+std::string clock_text(double s) {
+  if (s < 100) return fmt::format("{:.1f} s", s);
+  if (s < 6000) return fmt::format("{}:{:02}", int(s) / 60, int(s) % 60);
+  return fmt::format("{}:{:02}:{:02}", int(s) / 3600, int(s) / 60 % 60, int(s) % 60);
+}
+
+void print(const Progress& progress, const RenderOptions& options, const RenderState& state, bool last) {
+  const double share = share_done(options, state), elapsed = state.stats.seconds;
+  constexpr int width = 24;
+  const int full = int(share * width);
+  std::string line = fmt::format("[{:#<{}}{:.<{}}] {:5.1f} spp  {} elapsed", "", full, "", width - full,
+                                 spp_done(state.film), clock_text(elapsed));
+  if (!last && share > 0) line += fmt::format("  {} left", clock_text(elapsed * (1 - share) / share));
+  if (progress.error < infinity) line += fmt::format("  relMSE ~ {:.3g}", progress.error);
+  std::fprintf(stderr, progress.terminal ? (last ? "\r%s\033[K\n" : "\r%s\033[K") : "%s\n", line.c_str());
+  std::fflush(stderr);
+}
+
+}  // namespace
+
+Progress make_progress(bool quiet) {
+  Progress p;
+  p.shown = !quiet;
+  p.terminal = isatty(STDERR_FILENO);
+  return p;
+}
+
+void show(Progress& p, const RenderOptions& options, const RenderState& state) {
+  const double now = state.stats.seconds;
+  if (!p.shown || (p.last >= 0 && now - p.last < (p.terminal ? 0.25 : 10))) return;
+  if (p.last < 0 && !p.terminal) {  // in a log, nothing before the first ten seconds
+    p.last = 0;
+    return;
+  }
+  if (now - p.error_at > 1) {
+    p.error = estimated_error(state.film);
+    p.error_at = now;
+  }
+  p.last = now;
+  print(p, options, state, false);
+}
+
+void finish(Progress& p, const RenderOptions& options, const RenderState& state) {
+  if (!p.shown) return;
+  p.error = estimated_error(state.film);
+  print(p, options, state, true);
+}
+
+}  // namespace ajar

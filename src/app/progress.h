@@ -1,0 +1,21 @@
+// Enters: the state of a render, now and then.
+// Leaves: one line on the terminal that tells how far it is.
+#pragma once
+
+#include "ajar/render/render.h"
+
+namespace ajar {
+
+struct Progress {
+  bool shown = false;       ///< nothing is printed unless
+  bool terminal = false;    ///< stderr is one: the line is rewritten in place
+  double last = -1;         ///< render seconds of the last line
+  double error = infinity;  ///< last estimate; costs a pass over the film, so it is made anew only now and then
+  double error_at = 0;
+};
+
+Progress make_progress(bool quiet);
+void show(Progress& progress, const RenderOptions& options, const RenderState& state);
+void finish(Progress& progress, const RenderOptions& options, const RenderState& state);
+
+}  // namespace ajar

@@ -1,0 +1,281 @@
+// ajar render: loads a scene, renders it within a budget, writes image and record.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
+
+#include "ajar/core/error.h"
+#include "ajar/report/metrics.h"
+#include "ajar/scene/load.h"
+#include "commands.h"
+#include "progress.h"
+#include "summary.h"
+
+namespace ajar {
+namespace {
+
+struct Arguments {
+  std::string scene, out, size, time, cpu_time, heuristic = "power", sampler = "sobol", log, reference, checkpoint,
+                                                resume, techniques, integrator;
+  std::vector<std::string> defines, features;
+  int spp = 0, max_depth = std::numeric_limits<int>::min(), threads = 0, roulette_depth = 5;
+  uint64_t seed = 0;
+  bool png = false, half = false, quiet = false, lenient = false;
+};
+
+volatile std::sig_atomic_t stop_asked = 0;  // the one thing a signal handler may touch
+
+void ask_to_stop(int signal) {
+  stop_asked = 1;
+  std::signal(signal, SIG_DFL);  // a second one ends the program at once
+}
+
+double parse_duration(const std::string& option, const std::string& text) {
+  size_t used = 0;
+  double value = -1;
+  try {
+    value = std::stod(text, &used);
+  } catch (const std::exception&) {
+  }
+  const std::string unit = value >= 0 ? text.substr(used) : "";
+  const double factor = unit.empty() || unit == "s" ? 1 : unit == "m" || unit == "min" ? 60 : unit == "h" ? 3600 : 0;
+  if (!(value > 0) || factor == 0 || !std::isfinite(value))
+    throw Error(fmt::format("{} {}: not a time; write 90s, 5m or 1h", option, text));
+  return value * factor;
+}
+
+void set_size(Camera& camera, const std::string& text) {
+  int w = 0, h = 0, end = 0;
+  if (std::sscanf(text.c_str(), "%dx%d%n", &w, &h, &end) != 2 || size_t(end) != text.size() || w < 1 || h < 1 ||
+      w > 65536 || h > 65536)
+    throw Error(fmt::format("--size {}: write WIDTHxHEIGHT, each 1 to 65536", text));
+  camera.width = camera.crop_width = w;
+  camera.height = camera.crop_height = h;
+  camera.crop_x = camera.crop_y = 0;
+  camera.plane.y = camera.plane.x * float(h) / float(w);
+}
+
+LoadOptions load_options(const Arguments& a) {
+  LoadOptions o;
+  o.lenient = a.lenient;
+  for (const std::string& d : a.defines) {
+    const size_t equals = d.find('=');
+    if (equals == 0 || equals == std::string::npos) throw Error(fmt::format("-D {}: write -D name=value", d));
+    o.defines[d.substr(0, equals)] = d.substr(equals + 1);
+  }
+  return o;
+}
+
+RenderOptions render_options(const Arguments& a, Scene& scene) {
+  RenderOptions o;
+  const auto known = integrator_names();
+  const auto is_known = [&](const std::string& name) {
+    return std::find(known.begin(), known.end(), name) != known.end();
+  };
+  if (!a.integrator.empty() && !is_known(a.integrator))
+    throw Error(fmt::format("--integrator {}: unknown; known are {}", a.integrator, fmt::join(known, ", ")));
+  if (!a.integrator.empty())
+    o.integrator = a.integrator;
+  else if (is_known(scene.hints.integrator))
+    o.integrator = scene.hints.integrator;
+  o.spp = uint32_t(a.spp > 0 ? a.spp : scene.hints.spp > 0 ? scene.hints.spp : int(o.spp));
+  if (!a.time.empty()) o.seconds = parse_duration("--time", a.time);
+  if (!a.cpu_time.empty()) o.cpu_seconds = parse_duration("--cpu-time", a.cpu_time);
+  o.seed = a.seed;
+  o.threads = a.threads;
+  o.max_depth = a.max_depth != std::numeric_limits<int>::min() ? a.max_depth : scene.hints.max_depth;
+  if (o.max_depth < -1)
+    throw Error(fmt::format("--max-depth {}: -1 for unlimited, 1 or more edges otherwise", o.max_depth));
+  o.roulette_depth = a.roulette_depth;
+  o.heuristic = a.heuristic == "balance" ? Heuristic::balance : Heuristic::power;
+  o.sampler = a.sampler == "independent" ? SamplerKind::independent : SamplerKind::sobol;
+  o.techniques = !a.techniques.empty();
+  return o;
+}
+
+// Appends a line to the log whenever time has grown by a tenth since the last one.
+struct Log {
+  std::ofstream file;
+  std::optional<Picture> reference;
+  double next = 0.1;
+
+  void write(const RenderState& state, bool last) {
+    if (!file.is_open() || (!last && state.stats.seconds < next) || state.film.passes == 0) return;
+    next = std::max(next, state.stats.seconds) * 1.1;
+    nlohmann::ordered_json j = {
+        {"seconds", state.stats.seconds}, {"cpu_seconds", state.stats.cpu_seconds}, {"spp", state.film.passes}};
+    if (reference) j["error"] = nlohmann::ordered_json::parse(to_json(compare(develop(state.film), *reference)));
+    file << j.dump() << std::endl;
+  }
+};
+
+Log open_log(const Arguments& a, const Film& film) {
+  Log log;
+  if (!a.reference.empty()) {
+    log.reference = select(read_picture(a.reference), {"R", "G", "B"});
+    if (log.reference->width != film.width || log.reference->height != film.height)
+      throw Error(fmt::format("--reference {}: is {}x{}, the render {}x{}; use --size", a.reference,
+                              log.reference->width, log.reference->height, film.width, film.height));
+  }
+  if (a.log.empty()) return log;
+  log.file.open(a.log);
+  if (!log.file) throw Error(a.log + ": cannot write the log; is its folder there?");
+  return log;
+}
+
+// Fails before the render rather than after it.
+void check_writable(const std::string& path) {
+  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  if (!std::filesystem::is_directory(folder))
+    throw Error(fmt::format("{}: no such folder; make it first", folder.string()));
+}
+
+Picture append(Picture a, const Picture& b) {
+  Picture out{a.width, a.height, a.names, {}};
+  out.names.insert(out.names.end(), b.names.begin(), b.names.end());
+  const size_t na = a.names.size(), nb = b.names.size();
+  for (size_t i = 0; i < size_t(a.width) * size_t(a.height); ++i) {
+    out.pixels.insert(out.pixels.end(), &a.pixels[i * na], &a.pixels[i * na] + na);
+    out.pixels.insert(out.pixels.end(), &b.pixels[i * nb], &b.pixels[i * nb] + nb);
+  }
+  return out;
+}
+
+Picture with_features(const Arguments& a, const Scene& scene, const Accel& accel, const RenderState& state) {
+  Picture out = develop(state.film);
+  const std::map<std::string, std::vector<std::string>> groups = {{"albedo", {"Albedo.R", "Albedo.G", "Albedo.B"}},
+                                                                  {"normal", {"N.X", "N.Y", "N.Z"}},
+                                                                  {"position", {"P.X", "P.Y", "P.Z"}}};
+  std::vector<std::string> wanted;
+  bool with_variance = false;
+  for (const std::string& f : a.features) {
+    if (f == "variance")
+      with_variance = true;
+    else
+      wanted.insert(wanted.end(), groups.at(f).begin(), groups.at(f).end());
+  }
+  if (!wanted.empty()) out = append(out, select(render_features(scene, accel, a.seed), wanted));
+  if (with_variance) out = append(out, variance(state.film));
+  return out;
+}
+
+void write_outputs(const Arguments& a, const Scene& scene, const Accel& accel, Run& run, const RenderState& state) {
+  const double wall = wall_seconds(), cpu = process_cpu_seconds();
+  const std::filesystem::path out(a.out);
+  const bool only_png = out.extension() == ".png";
+  const std::string png = std::filesystem::path(out).replace_extension(".png").string();
+  if (!only_png) write_exr(a.out, with_features(a, scene, accel, state), metadata(run, state), a.half);
+  if (only_png || a.png) write_png(png, develop(state.film));
+  if (!a.techniques.empty()) write_pyramid(state.pyramid, state.film, a.techniques);
+  run.write_seconds = wall_seconds() - wall;
+  run.write_cpu = process_cpu_seconds() - cpu;
+  write_text(std::filesystem::path(out).replace_extension(".json").string(), summary(run, state).dump(2) + "\n");
+  if (a.quiet) return;
+  fmt::print("{}\n", a.out);
+  if (!only_png && a.png) fmt::print("{}\n", png);
+}
+
+void warn(const RenderState& state) {
+  if (state.stats.rejected == 0) return;
+  fmt::print(stderr, "ajar: warning: {} values were not finite or negative and were left out", state.stats.rejected);
+  for (const std::string& r : state.stats.replay) fmt::print(stderr, "; {}", r);
+  fmt::print(stderr, "\n");
+}
+
+uint64_t count_triangles(const Scene& scene) {
+  uint64_t n = 0;
+  for (const Mesh& m : scene.meshes) n += m.triangles.size();
+  return n;
+}
+
+void run_render(Arguments a) {
+  const double wall0 = wall_seconds(), cpu0 = process_cpu_seconds();
+  if (a.out.empty()) a.out = std::filesystem::path(a.scene).stem().string() + ".exr";
+  check_writable(a.out);
+  Scene scene = load_scene(a.scene, load_options(a));
+  if (!a.size.empty()) set_size(scene.camera, a.size);
+  for (const std::string& n : scene.notes)
+    if (!a.quiet) fmt::print(stderr, "ajar: note: {}\n", n);
+  Run run;
+  run.scene_path = a.scene, run.out_path = a.out, run.defines = a.defines;
+  run.options = render_options(a, scene);
+  run.threads = a.threads > 0 ? a.threads : int(std::thread::hardware_concurrency());
+  run.triangles = count_triangles(scene);
+  const double wall1 = wall_seconds(), cpu1 = process_cpu_seconds();
+  run.load_seconds = wall1 - wall0, run.load_cpu = cpu1 - cpu0;
+  const Accel accel(scene);
+  run.build_seconds = wall_seconds() - wall1, run.build_cpu = process_cpu_seconds() - cpu1;
+  run.accel_bytes = accel.bytes();
+
+  RenderState state = start_render(scene, run.options);
+  const std::string key = checkpoint_key(run, state.film);
+  if (!a.resume.empty()) load_checkpoint(a.resume, key, state);
+  Log log = open_log(a, state.film);
+  Progress progress = make_progress(a.quiet);
+  double saved = state.stats.seconds;
+  std::signal(SIGINT, ask_to_stop);
+  std::signal(SIGTERM, ask_to_stop);
+  render(scene, accel, run.options, state, [&](const RenderState& s) {
+    show(progress, run.options, s);
+    log.write(s, false);
+    if (!a.checkpoint.empty() && s.stats.seconds - saved > 60) {
+      saved = s.stats.seconds;
+      save_checkpoint(a.checkpoint, key, s);
+    }
+    return stop_asked == 0;
+  });
+  run.interrupted = stop_asked != 0;
+  finish(progress, run.options, state);
+  log.write(state, true);
+  if (run.interrupted && !a.quiet) fmt::print(stderr, "ajar: interrupted; writing what is there\n");
+  if (!a.checkpoint.empty()) save_checkpoint(a.checkpoint, key, state);
+  write_outputs(a, scene, accel, run, state);
+  warn(state);
+}
+
+}  // namespace
+
+void add_render(CLI::App& app) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* c = app.add_subcommand("render", "Render a scene to an EXR image");
+  c->add_option("scene", a->scene, "Mitsuba XML scene")->required();
+  c->add_option("-o,--out", a->out,
+                "image to write: .exr, or .png for a tonemapped one (default: the scene's name, here)");
+  c->add_flag("--png", a->png, "write a tonemapped PNG beside the EXR");
+  c->add_option("--integrator", a->integrator, "path, bdpt or light (default: the scene's, else bdpt)");
+  c->add_option("--spp", a->spp, "samples per pixel")->check(CLI::Range(1, 1 << 30));
+  c->add_option("--time", a->time, "wall time to render: 90s, 5m, 1h");
+  c->add_option("--cpu-time", a->cpu_time, "CPU time of all threads to render");
+  c->add_option("--seed", a->seed, "another seed, other noise");
+  c->add_option("--threads", a->threads, "threads (default: all)")->check(CLI::Range(1, 4096));
+  c->add_option("--size", a->size, "WIDTHxHEIGHT instead of the scene's; the crop window is dropped");
+  c->add_option("--max-depth", a->max_depth, "edges of the longest path; 1 sees lights alone, -1 is unlimited");
+  c->add_option("--roulette-depth", a->roulette_depth, "edges of a subpath before Russian roulette begins")
+      ->check(CLI::Range(1, 1 << 20));
+  c->add_option("--heuristic", a->heuristic, "of multiple importance sampling")
+      ->check(CLI::IsMember({"power", "balance"}));
+  c->add_option("--sampler", a->sampler, "sobol (Owen-scrambled) or independent")
+      ->check(CLI::IsMember({"sobol", "independent"}));
+  c->add_option("-D", a->defines, "name=value: a parameter of the scene")->allow_extra_args(false);
+  c->add_option("--aov", a->features, "more channels in the EXR: albedo,normal,position,variance")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"albedo", "normal", "position", "variance"}));
+  c->add_option("--reference", a->reference, "image to measure the error against in the log");
+  c->add_option("--log", a->log, "JSON lines at log-spaced times");
+  c->add_option("--techniques", a->techniques, "folder for an image of every strategy (s, t), weighted and raw");
+  c->add_option("--checkpoint", a->checkpoint, "file to save the state to, every minute and at the end");
+  c->add_option("--resume", a->resume, "checkpoint to go on from");
+  c->add_flag("--half", a->half, "16-bit floats in the EXR");
+  c->add_flag("--lenient", a->lenient, "leave out what the loader does not know, with a note");
+  c->add_flag("-q,--quiet", a->quiet, "no progress, no notes");
+  c->callback([a] { run_render(*a); });
+}
+
+}  // namespace ajar

@@ -1,0 +1,97 @@
+#include "summary.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "version.h"
+
+namespace ajar {
+namespace {
+
+const char* name_of(Heuristic h) { return h == Heuristic::power ? "power" : "balance"; }
+const char* name_of(SamplerKind k) { return k == SamplerKind::sobol ? "sobol" : "independent"; }
+
+double peak_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return double(usage.ru_maxrss) * 1024;
+}
+
+double per(double amount, double of) { return of > 0 ? amount / of : 0; }
+
+nlohmann::ordered_json options_json(const Run& run, const Film& film) {
+  const RenderOptions& o = run.options;
+  return {{"integrator", o.integrator},
+          {"spp", o.spp},
+          {"seconds", o.seconds},
+          {"cpu_seconds", o.cpu_seconds},
+          {"seed", o.seed},
+          {"threads", run.threads},
+          {"width", film.width},
+          {"height", film.height},
+          {"max_depth", o.max_depth},
+          {"roulette_depth", o.roulette_depth},
+          {"heuristic", name_of(o.heuristic)},
+          {"sampler", name_of(o.sampler)},
+          {"defines", run.defines}};
+}
+
+}  // namespace
+
+nlohmann::ordered_json summary(const Run& run, const RenderState& state) {
+  const Counters& n = state.stats.counters;
+  const double rays = double(n.camera_rays + n.light_rays + n.shadow_rays);
+  const double error = estimated_error(state.film);
+  nlohmann::ordered_json j;
+  j["version"] = version;
+  j["scene"] = run.scene_path;
+  j["image"] = run.out_path;
+  j["options"] = options_json(run, state.film);
+  j["spp"] = state.film.passes + double(state.film.chunks) / chunk_count(state.film);
+  j["interrupted"] = run.interrupted;
+  j["seconds"] = {{"load", run.load_seconds},
+                  {"build", run.build_seconds},
+                  {"trace", state.stats.seconds},
+                  {"write", run.write_seconds}};
+  j["cpu_seconds"] = {
+      {"load", run.load_cpu}, {"build", run.build_cpu}, {"trace", state.stats.cpu_seconds}, {"write", run.write_cpu}};
+  j["triangles"] = run.triangles;
+  j["rays"] = {{"camera", n.camera_rays}, {"light", n.light_rays}, {"shadow", n.shadow_rays}};
+  j["rays_per_second"] = per(rays, state.stats.seconds);
+  j["rays_per_cpu_second"] = per(rays, state.stats.cpu_seconds);
+  j["samples_per_cpu_second"] = per(double(n.camera_paths), state.stats.cpu_seconds);
+  j["mean_path_edges"] = {{"camera", per(double(n.camera_rays), double(n.camera_paths))},
+                          {"light", per(double(n.light_rays), double(n.light_paths))}};
+  j["zero_contribution_paths"] = per(double(n.zero_paths), double(n.camera_paths));
+  j["rejected_values"] = state.stats.rejected;
+  j["replay_rejected"] = state.stats.replay;
+  j["memory_peak_bytes"] = peak_bytes();
+  j["accel_bytes"] = run.accel_bytes;
+  if (error < infinity) j["estimated_relmse"] = error;
+  return j;
+}
+
+Metadata metadata(const Run& run, const RenderState& state) {
+  return {{"ajar:version", std::string(version)},
+          {"ajar:scene", run.scene_path},
+          {"ajar:options", options_json(run, state.film).dump()},
+          {"ajar:seed", double(run.options.seed)},
+          {"ajar:spp", state.film.passes + double(state.film.chunks) / chunk_count(state.film)},
+          {"ajar:seconds", state.stats.seconds},
+          {"ajar:cpu_seconds", state.stats.cpu_seconds}};
+}
+
+std::string checkpoint_key(const Run& run, const Film& film) {
+  nlohmann::ordered_json o = options_json(run, film);
+  for (const char* budget : {"spp", "seconds", "cpu_seconds", "threads"}) o.erase(budget);
+  std::error_code none_such;
+  const auto bytes = std::filesystem::file_size(run.scene_path, none_such);
+  return fmt::format("{} {} ({} bytes, {} triangles) {}", version,
+                     std::filesystem::path(run.scene_path).filename().string(), none_such ? 0 : bytes, run.triangles,
+                     o.dump());
+}
+
+}  // namespace ajar

@@ -1,0 +1,30 @@
+// Enters: a finished or running render.
+// Leaves: its record as JSON, the metadata of its EXR, and the key that a checkpoint is held to.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "ajar/film/picture.h"
+#include "ajar/render/render.h"
+
+namespace ajar {
+
+/// What the user typed and where the time went, beside the render's own options.
+struct Run {
+  std::string scene_path, out_path;
+  std::vector<std::string> defines;
+  RenderOptions options;
+  double load_seconds = 0, build_seconds = 0, write_seconds = 0;
+  double load_cpu = 0, build_cpu = 0, write_cpu = 0;
+  uint64_t triangles = 0, accel_bytes = 0;
+  int threads = 1;
+  bool interrupted = false;
+};
+
+nlohmann::ordered_json summary(const Run& run, const RenderState& state);
+Metadata metadata(const Run& run, const RenderState& state);
+/// Everything that decides the bytes of the image but the number of passes.
+std::string checkpoint_key(const Run& run, const Film& film);
+
+}  // namespace ajar

@@ -1,0 +1,125 @@
+#include "ajar/film/film.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+namespace ajar {
+namespace {
+
+bool is_done(const Film& film, int x, int y) { return uint32_t((y / tile) * tiles_x(film) + x / tile) < film.chunks; }
+
+// Share of the pass at work whose light subpaths are in.
+double share_done(const Film& film) {
+  const uint32_t n = chunk_count(film);
+  if (film.chunks == 0 || film.chunks == n) return film.chunks == 0 ? 0 : 1;
+  size_t done = 0;
+  for (uint32_t i = 0; i < film.chunks; ++i) {
+    const int x = int(i) % tiles_x(film) * tile, y = int(i) / tiles_x(film) * tile;
+    done += size_t(std::min(tile, film.width - x)) * size_t(std::min(tile, film.height - y));
+  }
+  return double(done) / double(film.pixels());
+}
+
+void add_splat(Film& film, const Splat& s, int y_from, int y_to) {
+  // Pixels whose filter reaches the splat: centres within the radius.
+  const float r = film.filter.radius, x = s.raster.x - float(film.x0) - 0.5f, y = s.raster.y - float(film.y0) - 0.5f;
+  const int xa = std::max(0, int(std::ceil(x - r))), xb = std::min(film.width - 1, int(std::floor(x + r)));
+  const int ya = std::max(y_from, int(std::ceil(y - r))), yb = std::min(y_to - 1, int(std::floor(y + r)));
+  for (int py = ya; py <= yb; ++py) {
+    const float wy = eval(film.filter, y - float(py));
+    for (int px = xa; px <= xb; ++px)
+      film.splat[size_t(py) * film.width + px] += s.value * (wy * eval(film.filter, x - float(px)));
+  }
+}
+
+}  // namespace
+
+Film make_film(const Camera& camera, const Filter& filter, bool splats) {
+  Film film;
+  film.x0 = camera.crop_x, film.y0 = camera.crop_y;
+  film.width = camera.crop_width, film.height = camera.crop_height;
+  film.filter = filter;
+  film.splats = splats;
+  const size_t n = film.pixels();
+  film.camera.resize(n);
+  film.camera_sum.resize(n);
+  film.square_sum.resize(n);
+  if (splats) film.splat.resize(n), film.splat_sum.resize(n);
+  return film;
+}
+
+void merge(Film& film, const std::vector<std::vector<Splat>>& chunks) {
+  // Bands of rows in parallel; within a band, splats in the order of chunks and paths.
+  const int bands = std::clamp(film.height / 32, 1, 16);
+  tbb::parallel_for(0, bands, [&](int band) {
+    const int from = film.height * band / bands, to = film.height * (band + 1) / bands;
+    const float reach = film.filter.radius + 0.5f, lo = float(film.y0 + from) - reach, hi = float(film.y0 + to) + reach;
+    for (const auto& chunk : chunks)
+      for (const Splat& s : chunk)
+        if (s.raster.y >= lo && s.raster.y <= hi) add_splat(film, s, from, to);
+  });
+}
+
+void finish_pass(Film& film) {
+  const float scale = 1.0f / float(film.pixels());
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, film.pixels(), 16384), [&](const auto& range) {
+    for (size_t i = range.begin(); i != range.end(); ++i) {
+      glm::dvec3 x(film.camera[i]);
+      film.camera_sum[i] += x;
+      film.camera[i] = Rgb(0);
+      if (film.splats) {
+        const glm::dvec3 s(film.splat[i] * scale);
+        film.splat_sum[i] += s;
+        film.splat[i] = Rgb(0);
+        x += s;
+      }
+      film.square_sum[i] += x * x;
+    }
+  });
+  ++film.passes;
+  film.chunks = 0;
+}
+
+Picture develop(const Film& film) {
+  Picture out{film.width, film.height, {"R", "G", "B"}, std::vector<float>(3 * film.pixels())};
+  const double share = share_done(film), per_path = 1.0 / double(film.pixels());
+  for (int y = 0; y < film.height; ++y)
+    for (int x = 0; x < film.width; ++x) {
+      const size_t i = size_t(y) * film.width + x;
+      const bool done = is_done(film, x, y);
+      glm::dvec3 value(0);
+      const double n = film.passes + (done ? 1.0 : 0.0);
+      if (n > 0) value += (film.camera_sum[i] + (done ? glm::dvec3(film.camera[i]) : glm::dvec3(0))) / n;
+      if (film.splats && film.passes + share > 0)
+        value += (film.splat_sum[i] + glm::dvec3(film.splat[i]) * per_path) / (film.passes + share);
+      for (int c = 0; c < 3; ++c) out.pixels[3 * i + c] = float(value[c]);
+    }
+  return out;
+}
+
+Picture variance(const Film& film) {
+  Picture out{
+      film.width, film.height, {"Variance.R", "Variance.G", "Variance.B"}, std::vector<float>(3 * film.pixels())};
+  if (film.passes < 2) return out;
+  const double n = film.passes;
+  for (size_t i = 0; i < film.pixels(); ++i) {
+    const glm::dvec3 mean = (film.camera_sum[i] + (film.splats ? film.splat_sum[i] : glm::dvec3(0))) / n;
+    const glm::dvec3 v = glm::max((film.square_sum[i] / n - mean * mean) / (n - 1), glm::dvec3(0));
+    for (int c = 0; c < 3; ++c) out.pixels[3 * i + c] = float(v[c]);
+  }
+  return out;
+}
+
+double estimated_error(const Film& film) {
+  if (film.passes < 2) return infinity;
+  const double n = film.passes;
+  double sum = 0;
+  for (size_t i = 0; i < film.pixels(); ++i) {
+    const glm::dvec3 mean = (film.camera_sum[i] + (film.splats ? film.splat_sum[i] : glm::dvec3(0))) / n;
+    const glm::dvec3 v = glm::max((film.square_sum[i] / n - mean * mean) / (n - 1), glm::dvec3(0));
+    for (int c = 0; c < 3; ++c) sum += v[c] / (mean[c] * mean[c] + 0.01);
+  }
+  return sum / (3.0 * double(film.pixels()));
+}
+
+}  // namespace ajar

@@ -1,0 +1,61 @@
+#include "ajar/film/pyramid.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "ajar/core/error.h"
+
+namespace ajar {
+namespace {
+
+void splat(const Film& film, const Strategy& c, Pyramid::Layer& layer) {
+  const double per_path = 1.0 / double(film.pixels());
+  const float r = film.filter.radius, x = c.raster.x - float(film.x0) - 0.5f, y = c.raster.y - float(film.y0) - 0.5f;
+  for (int py = std::max(0, int(std::ceil(y - r))); py <= std::min(film.height - 1, int(std::floor(y + r))); ++py)
+    for (int px = std::max(0, int(std::ceil(x - r))); px <= std::min(film.width - 1, int(std::floor(x + r))); ++px) {
+      const double w = per_path * double(eval(film.filter, x - float(px))) * double(eval(film.filter, y - float(py)));
+      const size_t i = size_t(py) * film.width + px;
+      layer.raw[i] += glm::dvec3(c.raw) * w;
+      layer.weighted[i] += glm::dvec3(c.weighted) * w;
+    }
+}
+
+Picture average(const Film& film, const std::vector<glm::dvec3>& sum) {
+  Picture out{film.width, film.height, {"R", "G", "B"}, std::vector<float>(3 * film.pixels())};
+  for (size_t i = 0; i < sum.size(); ++i)
+    for (int c = 0; c < 3; ++c) out.pixels[3 * i + c] = float(sum[i][c] / std::max(1u, film.passes));
+  return out;
+}
+
+}  // namespace
+
+void merge(Pyramid& pyramid, const Film& film, const std::vector<std::vector<Strategy>>& chunks) {
+  for (const auto& chunk : chunks)
+    for (const Strategy& c : chunk) {
+      Pyramid::Layer& layer = pyramid.layers[{c.s, c.t}];
+      if (layer.raw.empty()) layer.raw.resize(film.pixels()), layer.weighted.resize(film.pixels());
+      if (c.t == 1) {
+        splat(film, c, layer);
+      } else {
+        const size_t i = size_t(c.raster.y) * film.width + size_t(c.raster.x);
+        layer.raw[i] += glm::dvec3(c.raw);
+        layer.weighted[i] += glm::dvec3(c.weighted);
+      }
+    }
+}
+
+void write_pyramid(const Pyramid& pyramid, const Film& film, const std::string& folder) {
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (failure)
+    throw Error(
+        fmt::format("{}: cannot make this folder ({}); name one that can be written", folder, failure.message()));
+  for (const auto& [st, layer] : pyramid.layers) {
+    const std::string base = fmt::format("{}/s{}t{}", folder, st.first, st.second);
+    write_exr(base + ".exr", average(film, layer.weighted), {}, false);
+    write_exr(base + "-raw.exr", average(film, layer.raw), {}, false);
+  }
+}
+
+}  // namespace ajar

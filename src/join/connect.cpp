@@ -1,0 +1,139 @@
+#include "ajar/join/connect.h"
+
+namespace ajar {
+namespace {
+
+// The end of a subpath at its vertex n - 1 >= 1, from which the other side's vertex lies in direction w: other is what
+// the other side's density becomes here, reverse the density of going back to the vertex before.
+End end_at(const Subpath& subpath, int n, double other, double reverse) {
+  const Vertex& v = subpath[n - 1];
+  const Vertex& before = subpath[n - 2];
+  return {n, v.own, other, before.own, reverse * v.back, before.delta, v.sum};
+}
+
+// The segment between two points, moved off both surfaces.
+void set_segment(Candidate& out, const Vec3& from, const Vec3& to) {
+  out.o = from;
+  out.d = to - from;
+  out.t_max = 1;
+}
+
+}  // namespace
+
+bool join_hit(const Scene& scene, const Subpath& camera, const Surface& surface, Candidate& out) {
+  const LightPoint point = light_point(scene, surface);
+  const Vertex& v = camera[camera.n - 1];
+  if (point.light == none) return false;
+  const Rgb radiance = emitted(scene, surface, v.guide.wo);
+  if (is_black(radiance)) return false;
+  out.value = v.beta * radiance;
+  const double pick = scene.light_choice.pdf(point.light);
+  const EmissionPdf emission = pdf_emission(scene, point, v.guide.wo);
+  const Vertex& before = camera[camera.n - 2];
+  out.light = {};
+  out.camera = {camera.n,     v.own, pick * emission.position, before.own, emission.direction * v.back,
+                before.delta, v.sum};
+  out.shares = {camera.n > 2 ? direct_share(scene, point, before.p, -v.guide.wo, v.distance2) : 0, 1};
+  return true;
+}
+
+bool join_escape(const Scene& scene, uint32_t light, const Subpath& camera, const Walk& walk, Candidate& out) {
+  const Rgb radiance = environment(scene, light, walk.d);
+  if (is_black(radiance)) return false;
+  out.value = walk.beta * radiance;
+  const LightPoint point = light_point(scene, light, walk.d);
+  const double pick = scene.light_choice.pdf(light);
+  const EmissionPdf emission = pdf_emission(scene, point, -walk.d);
+  const Vertex& before = camera[camera.n - 1];
+  const double cosine = std::abs(glm::dot(before.ng, walk.d));
+  out.light = {};
+  out.camera = {camera.n + 1, walk.pdf, pick * emission.direction, before.own, emission.position * cosine,
+                before.delta, walk.sum};
+  out.shares = {camera.n > 1 ? direct_share(scene, point, before.p, walk.d, 1) : 0, 1};
+  return true;
+}
+
+bool join_light(const Scene& scene, Sampler& sampler, const Subpath& camera, int t, double light_paths,
+                Candidate& out) {
+  Vec2 u_choice = sampler.next2();
+  const Vec2 u = sampler.next2();
+  const uint32_t light = scene.light_choice.sample(u_choice.x);
+  const float pick = scene.light_choice.pdf(light);
+  const Vertex& c = camera[t - 1];
+  DirectSample d;
+  if (!sample_direct(scene, light, c.p, u, d)) return false;
+  const GuideEval e = evaluate(c.guide, d.wi, Mode::radiance);
+  out.value = c.beta * e.f_cos * d.radiance / (pick * d.pdf);
+  if (is_black(out.value)) return false;
+  const LightPoint& point = d.point;
+  const double d2 = point.infinite ? 1 : sqr(d.distance);
+  const double cos_light = point.infinite || point.delta_position ? 1 : std::abs(glm::dot(point.n, d.wi));
+  const double cos_here = std::abs(glm::dot(c.ng, d.wi));
+  const EmissionPdf emission = pdf_emission(scene, point, -d.wi);
+  const bool hittable = !point.delta_position && !point.delta_direction;
+  const double own = pick * double(point.infinite ? emission.direction : emission.position);
+  const double to_here = point.infinite ? emission.position : emission.direction;
+  const double nee = hittable ? double(d.pdf) * cos_light / d2 * pick : own;
+  out.light = {1, own, e.pdf * cos_light / d2, 1, 0, false, hittable ? 1.0 : 0.0};
+  out.camera = end_at(camera, t, to_here * cos_here / d2, e.pdf_reverse);
+  out.shares = {ratio(nee, own), light_paths};
+  const Vec3 from = offset(c.p, c.ng, c.error, d.wi);
+  if (point.infinite) {
+    out.o = from, out.d = d.wi, out.t_max = infinity;
+  } else {
+    set_segment(out, from, point.delta_position ? point.p : offset(point.p, point.n, point.error, -d.wi));
+  }
+  return true;
+}
+
+bool join_vertices(const Subpath& light, int s, double share, const Subpath& camera, int t, double light_paths,
+                   Candidate& out) {
+  const Vertex& a = light[s - 1];
+  const Vertex& c = camera[t - 1];
+  const Vec3 between = c.p - a.p;
+  const float d2 = length2(between);
+  if (!(d2 > 0)) return false;
+  const Vec3 w = between / std::sqrt(d2);
+  const GuideEval ec = evaluate(c.guide, -w, Mode::radiance);
+  if (is_black(ec.f_cos)) return false;
+  const GuideEval ea = evaluate(a.guide, w, Mode::importance);
+  out.value = a.beta * ea.f_cos * ec.f_cos * c.beta / d2;
+  if (is_black(out.value)) return false;
+  out.light = end_at(light, s, ec.pdf * std::abs(glm::dot(a.ng, w)) / d2, ea.pdf_reverse);
+  out.camera = end_at(camera, t, ea.pdf * std::abs(glm::dot(c.ng, w)) / d2, ec.pdf_reverse);
+  out.shares = {share, light_paths};
+  set_segment(out, offset(c.p, c.ng, c.error, -w), offset(a.p, a.ng, a.error, w));
+  return true;
+}
+
+bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int s, double share, double light_paths,
+                 Candidate& out) {
+  const Vertex& a = light[s - 1];
+  CameraConnection k;
+  if (a.infinite || !connect(scene.camera, a.p, lens, scene.filter.radius, k)) return false;
+  const double cosine = a.ng == Vec3(0) ? 1 : std::abs(glm::dot(a.ng, k.w));
+  if (s == 1) {  // the light's own point, seen directly
+    if (a.point.delta_position || !(glm::dot(a.ng, k.w) > 0)) return false;
+    out.value = a.beta * float(cosine * k.factor);
+    out.light = {1, a.own, k.factor * cosine, 1, 0, false, a.sum};
+  } else {
+    const GuideEval e = evaluate(a.guide, k.w, Mode::importance);
+    out.value = a.beta * e.f_cos * k.factor;
+    out.light = end_at(light, s, k.factor * cosine, e.pdf_reverse);
+  }
+  if (is_black(out.value)) return false;
+  out.camera = {1, 1, 0, 1, 0, false, 0};
+  out.shares = {share, light_paths};
+  out.raster = k.raster;
+  set_segment(out, a.ng == Vec3(0) ? a.p : offset(a.p, a.ng, a.error, k.w), k.p);
+  // Nearer than the near plane nothing is in the way, as for camera rays.
+  const Camera& camera = scene.camera;
+  if (camera.near_clip > 0) out.t_max = 1 - camera.near_clip / (camera.to_camera * Vec4(a.p, 1)).z;
+  return true;
+}
+
+bool visible(const Accel& accel, const Candidate& candidate) {
+  return !accel.occluded(candidate.o, candidate.d, candidate.t_max);
+}
+
+}  // namespace ajar

@@ -1,0 +1,36 @@
+#include "ajar/join/mis.h"
+
+namespace ajar {
+namespace {
+
+// Sum over the strategies that take vertices away from this end, relative to "this end keeps all n with ordinary
+// densities". first is the raised share of the strategy that leaves one vertex; the ratios of density are raised here.
+double handed_over(Heuristic h, const End& end, double first) {
+  if (end.n == 0) return 0;
+  const double last = raise(h, ratio(end.other, end.own));
+  if (end.n == 1) return last * end.sum_before;  // S_0
+  const double share = end.delta_before ? 0 : (end.n == 2 ? first : 1);
+  return last * extend(share, raise(h, ratio(end.other_before, end.own_before)), end.sum_before);  // (R3)
+}
+
+}  // namespace
+
+double mis_weight(Heuristic h, const End& light, const End& camera, const Shares& shares) {
+  const double nee = raise(h, shares.light_first), film = raise(h, shares.camera_first);
+  // Everything relative to the product of ordinary densities with s vertices from emission and t from the camera. (R1)
+  const double here = (light.n == 1 ? nee : 1) * (camera.n == 1 ? film : 1);
+  double fewer_light = handed_over(h, light, nee);
+  // A strategy with t - 1 .. 1 camera vertices; s + 1 of light: next-event estimation where that is the first one.
+  double fewer_camera;
+  if (light.n == 0 && camera.n >= 2) {
+    // s = 1 next: the connection of c_(t-2) to the light's point found afresh.
+    const double last = raise(h, ratio(camera.other, camera.own));
+    const double share = camera.delta_before ? 0 : (camera.n == 2 ? 0.0 : nee);
+    fewer_camera = last * extend(share, raise(h, ratio(camera.other_before, camera.own_before)), camera.sum_before);
+  } else {
+    fewer_camera = handed_over(h, camera, film);
+  }
+  return here / (here + fewer_light + fewer_camera);
+}
+
+}  // namespace ajar

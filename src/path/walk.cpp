@@ -1,0 +1,132 @@
+#include "ajar/path/walk.h"
+
+namespace ajar {
+namespace {
+
+// v_i of (R2) for i = n - 1 >= 1, the strategy that would connect the last vertex to the one before it.
+double share_of_last(Heuristic h, const Subpath& subpath, const Walk& walk) {
+  const int last = subpath.n - 1;
+  if (subpath[last].delta || subpath[last - 1].delta) return 0;
+  return last == 1 ? raise(h, walk.first_share) : 1;
+}
+
+// S of the subpath's last vertex, now that its event is known.
+double sum_of_last(Heuristic h, const Subpath& subpath, const Walk& walk) {
+  const Vertex& last = subpath[subpath.n - 1];
+  if (subpath.n == 1) return last.sum;
+  const double r = raise(h, ratio(walk.other_before, subpath[subpath.n - 2].own));
+  return extend(share_of_last(h, subpath, walk), r, last.sum);  // (R2)
+}
+
+}  // namespace
+
+Counters& Counters::operator+=(const Counters& o) {
+  camera_rays += o.camera_rays, light_rays += o.light_rays, shadow_rays += o.shadow_rays;
+  camera_paths += o.camera_paths, light_paths += o.light_paths;
+  zero_paths += o.zero_paths;
+  return *this;
+}
+
+void start_camera(const Scene& scene, const WalkOptions& options, const Vec2& raster, const Vec2& lens,
+                  Subpath& subpath, Walk& walk) {
+  const CameraRay ray = generate(scene.camera, raster, lens);
+  subpath.n = 0;
+  Vertex& v = subpath.add();
+  v.p = ray.o, v.error = 0, v.ng = Vec3(0);
+  v.own = 1, v.sum = 0, v.delta = false, v.infinite = false;
+  v.beta = Rgb(1);
+  walk = Walk{};
+  walk.o = ray.o, walk.d = ray.d, walk.t_min = ray.t_min, walk.t_max = ray.t_max;
+  walk.first_share = options.light_paths;
+}
+
+bool start_light(const Scene& scene, Sampler& sampler, Subpath& subpath, Walk& walk) {
+  subpath.n = 0;
+  if (scene.lights.empty()) return false;
+  Vec2 u_choice = sampler.next2();
+  const Vec2 u_position = sampler.next2(), u_direction = sampler.next2();
+  const uint32_t light = scene.light_choice.sample(u_choice.x);
+  const float pick = scene.light_choice.pdf(light);
+  EmissionSample e;
+  if (!sample_emission(scene, light, u_position, u_direction, e) || is_black(e.radiance)) return false;
+  const LightPoint& point = e.point;
+  const bool place = point.infinite || point.delta_position;
+  const float cosine = place ? 1 : std::abs(glm::dot(point.n, e.direction));
+  Vertex& v = subpath.add();
+  v.p = point.p, v.error = point.error, v.ng = point.n;
+  v.infinite = point.infinite;
+  v.delta = false;
+  v.own = double(pick) * (point.infinite ? e.pdf_direction : e.pdf_position);
+  v.sum = point.delta_position || point.delta_direction ? 0 : 1;
+  v.beta = e.radiance / (pick * (point.infinite ? e.pdf_direction : e.pdf_position));
+  v.point = point;
+  walk = Walk{};
+  walk.side = Side::light;
+  walk.o = place ? point.p : offset(point.p, point.n, point.error, e.direction);
+  walk.d = e.direction;
+  walk.planar = point.infinite;
+  walk.pdf = point.infinite ? e.pdf_position : e.pdf_direction;
+  walk.beta = v.beta * float(cosine / walk.pdf);
+  return true;
+}
+
+double direct_share(const Scene& scene, const LightPoint& point, const Vec3& x, const Vec3& wi, double distance2) {
+  if (point.delta_position || point.delta_direction) return 1;
+  const EmissionPdf emission = pdf_emission(scene, point, -wi);
+  const double direct = pdf_direct(scene, point, x, wi);
+  if (point.infinite) return ratio(direct, emission.direction);
+  return ratio(direct * std::abs(glm::dot(point.n, wi)) / distance2, emission.position);
+}
+
+bool step(const Scene& scene, const Accel& accel, const WalkOptions& options, Subpath& subpath, Walk& walk,
+          Surface& surface) {
+  walk.sum = sum_of_last(options.heuristic, subpath, walk);
+  Hit hit;
+  if (!accel.intersect(walk.o, walk.d, walk.t_min, walk.t_max, hit)) return false;
+  surface = make_surface(scene, hit, walk.o, walk.d);
+  Vertex& v = subpath.add();
+  const Vertex& before = subpath[subpath.n - 2];
+  const float cosine = std::abs(glm::dot(surface.ng, walk.d));
+  v.p = surface.p, v.error = surface.error, v.ng = surface.ng;
+  v.distance2 = walk.planar ? 1 : length2(v.p - before.p);
+  v.beta = walk.beta;
+  v.own = walk.pdf * cosine / v.distance2;
+  v.back = walk.planar ? 1 : (before.ng == Vec3(0) ? 1 : std::abs(glm::dot(before.ng, walk.d))) / v.distance2;
+  v.sum = walk.sum;
+  v.delta = false, v.infinite = false;
+  v.shape = hit.shape, v.instance = hit.instance;
+  if (subpath.n == 2) {
+    if (walk.side == Side::camera)
+      v.own = raster_factor(scene.camera, before.p, v.p) * cosine;
+    else
+      walk.first_share = direct_share(scene, before.point, v.p, -walk.d, v.distance2);
+  }
+  make_guide(scene, surface, -walk.d, v.guide);
+  return true;
+}
+
+bool scatter(const WalkOptions& options, Sampler& sampler, Subpath& subpath, Walk& walk) {
+  Vertex& v = subpath[subpath.n - 1];
+  const Mode mode = walk.side == Side::camera ? Mode::radiance : Mode::importance;
+  const Vec2 u_lobe = sampler.next2(), u = sampler.next2();
+  GuideSample s;
+  if (!sample(v.guide, u_lobe.x, u, mode, s) || is_black(s.weight)) return false;
+  walk.survival *= s.weight * (mode == Mode::radiance ? sqr(s.eta) : 1.0f);
+  walk.beta = v.beta * s.weight;
+  if (subpath.n > options.roulette_from) {
+    const float keep = std::min(max_component(walk.survival), 0.95f);
+    if (!(u_lobe.y < keep)) return false;
+    walk.beta /= keep;
+    walk.survival /= keep;
+  }
+  v.delta = s.delta;
+  walk.o = offset(v.p, v.ng, v.error, s.wi);
+  walk.d = s.wi;
+  walk.t_min = 0, walk.t_max = infinity;
+  walk.pdf = s.pdf;
+  walk.planar = false;
+  walk.other_before = double(s.pdf_reverse) * v.back;
+  return true;
+}
+
+}  // namespace ajar

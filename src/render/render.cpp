@@ -1,0 +1,168 @@
+#include "ajar/render/render.h"
+
+#include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <chrono>
+#include <ctime>
+
+#include "ajar/core/error.h"
+#include "job.h"
+
+namespace ajar {
+namespace {
+
+struct Integrator {
+  const char* name;
+  Trace trace;
+  bool splats;
+};
+constexpr Integrator integrators[] = {
+    {"path", trace_path, false}, {"bdpt", trace_bdpt, true}, {"light", trace_light, true}};
+
+const Integrator& find_integrator(const std::string& name) {
+  for (const Integrator& i : integrators)
+    if (name == i.name) return i;
+  throw Error(fmt::format("--integrator {}: unknown; known are {}", name, fmt::join(integrator_names(), ", ")));
+}
+
+// Chunks traced between two merges: bounds the memory of splats and the time to the next look at the clock.
+constexpr uint32_t batch_chunks = 256;
+
+struct Batch {
+  std::vector<std::vector<Splat>> splats;
+  std::vector<std::vector<Strategy>> strategies;
+  std::vector<uint64_t> rejected_at;  // first pixel of each chunk with a rejected value, or none64
+};
+constexpr uint64_t none64 = ~0ull;
+
+// The filter's sign and size, where they are not 1, belong to what the camera sample found; splats are filtered on the
+// film.
+void weigh_by_filter(std::vector<Strategy>& strategies, size_t from, float weight) {
+  for (size_t i = from; i < strategies.size(); ++i)
+    if (strategies[i].t > 1) strategies[i].raw *= weight, strategies[i].weighted *= weight;
+}
+
+void trace_chunk(const Job& job, const Integrator& integrator, Film& film, uint32_t chunk, Scratch& scratch,
+                 uint64_t& rejected_at) {
+  const int x0 = int(chunk) % tiles_x(film) * tile, y0 = int(chunk) / tiles_x(film) * tile;
+  rejected_at = none64;
+  for (int y = y0; y < std::min(y0 + tile, film.height); ++y)
+    for (int x = x0; x < std::min(x0 + tile, film.width); ++x) {
+      const uint64_t pixel = uint64_t(y) * uint64_t(film.width) + uint64_t(x);
+      const PixelSample sample{x, y, pixel, film.passes};
+      Sampler sampler = make_sampler(job.sampler, job.seed, Side::camera, pixel, film.passes);
+      float sign = 1;
+      const Vec2 centre(float(film.x0 + x) + 0.5f, float(film.y0 + y) + 0.5f);
+      const Vec2 offset_in_pixel = ajar::sample(film.filter, sampler.next2(), sign);
+      const Vec2 lens = sampler.next2();
+      const uint64_t before = scratch.rejected;
+      const size_t first = scratch.strategies ? scratch.strategies->size() : 0;
+      Rgb value = integrator.trace(job, sample, centre + offset_in_pixel, lens, sampler, scratch);
+      if (!accept(value, scratch)) value = Rgb(0);
+      if (scratch.rejected != before && rejected_at == none64) rejected_at = pixel;
+      ++scratch.counters.camera_paths;
+      scratch.counters.zero_paths += is_black(value);
+      film.camera[pixel] = value * sign;
+      if (scratch.strategies) weigh_by_filter(*scratch.strategies, first, sign);
+    }
+}
+
+Job make_job(const Scene& scene, const Accel& accel, const RenderOptions& options, const Film& film) {
+  Job job;
+  job.scene = &scene;
+  job.accel = &accel;
+  job.walk.max_edges = options.max_depth < 0 ? deepest : std::min(options.max_depth, deepest);
+  job.walk.roulette_from = options.roulette_depth;
+  job.walk.heuristic = options.heuristic;
+  job.walk.light_paths = double(film.pixels());
+  job.sampler = options.sampler;
+  job.seed = options.seed;
+  job.techniques = options.techniques;
+  return job;
+}
+
+void note_rejected(RenderStats& stats, const std::vector<uint64_t>& pixels, const Film& film, uint64_t seed) {
+  for (const uint64_t p : pixels)
+    if (p != none64 && stats.replay.size() < 5)
+      stats.replay.push_back(fmt::format("pixel {},{} pass {} seed {}", p % uint64_t(film.width),
+                                         p / uint64_t(film.width), film.passes, seed));
+}
+
+}  // namespace
+
+std::vector<std::string> integrator_names() {
+  std::vector<std::string> names;
+  for (const Integrator& i : integrators) names.emplace_back(i.name);
+  return names;
+}
+
+double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double process_cpu_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
+
+RenderState start_render(const Scene& scene, const RenderOptions& options) {
+  RenderState state;
+  state.film = make_film(scene.camera, scene.filter, find_integrator(options.integrator).splats);
+  return state;
+}
+
+void render(const Scene& scene, const Accel& accel, const RenderOptions& options, RenderState& state,
+            const Monitor& monitor) {
+  const Integrator& integrator = find_integrator(options.integrator);
+  Film& film = state.film;
+  RenderStats& stats = state.stats;
+  const Job job = make_job(scene, accel, options, film);
+  const double wall0 = wall_seconds() - stats.seconds, cpu0 = process_cpu_seconds() - stats.cpu_seconds;
+  const bool timed = options.seconds > 0 || options.cpu_seconds > 0;
+  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+  tbb::enumerable_thread_specific<Scratch> scratches;
+  Batch batch;
+  const uint32_t all = chunk_count(film);
+  const auto out_of_budget = [&] {
+    stats.seconds = wall_seconds() - wall0;
+    stats.cpu_seconds = process_cpu_seconds() - cpu0;
+    if (!timed) return film.passes >= options.spp;
+    return (options.seconds > 0 && stats.seconds >= options.seconds) ||
+           (options.cpu_seconds > 0 && stats.cpu_seconds >= options.cpu_seconds);
+  };
+  while (!out_of_budget()) {
+    const uint32_t from = film.chunks, count = std::min(batch_chunks, all - from);
+    batch.splats.resize(count);
+    batch.strategies.resize(count);
+    batch.rejected_at.resize(count);
+    arena.execute([&] {
+      tbb::parallel_for(0u, count, [&](uint32_t i) {
+        Scratch& scratch = scratches.local();
+        batch.splats[i].clear();
+        batch.strategies[i].clear();
+        scratch.splats = &batch.splats[i];
+        scratch.strategies = job.techniques ? &batch.strategies[i] : nullptr;
+        trace_chunk(job, integrator, film, from + i, scratch, batch.rejected_at[i]);
+      });
+      if (film.splats) merge(film, batch.splats);
+      if (job.techniques) merge(state.pyramid, film, batch.strategies);
+      note_rejected(stats, batch.rejected_at, film, options.seed);
+      film.chunks += count;
+      if (film.chunks == all) finish_pass(film);
+    });
+    for (Scratch& s : scratches) {
+      stats.counters += s.counters;
+      stats.rejected += s.rejected;
+      s.counters = {};
+      s.rejected = 0;
+    }
+    if (!monitor(state)) break;
+  }
+  out_of_budget();
+}
+
+}  // namespace ajar

@@ -1,0 +1,41 @@
+// Enters: pictures.
+// Leaves: planes of doubles, filtered; the parts that the figures of difference are made of.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "ajar/film/picture.h"
+
+namespace ajar {
+
+/// One channel in rows from the top.
+struct Plane {
+  int width = 0, height = 0;
+  std::vector<double> values;
+
+  size_t size() const { return values.size(); }
+  double& operator[](size_t i) { return values[i]; }
+  double operator[](size_t i) const { return values[i]; }
+};
+
+inline Plane make_plane(int width, int height) {
+  return {width, height, std::vector<double>(size_t(width) * size_t(height))};
+}
+
+/// Indices of the channels R, G, B; thrice that of the only channel or of Y in a grey picture. Throws Error without
+/// them.
+std::array<size_t, 3> rgb_channels(const Picture& picture);
+std::array<Plane, 3> rgb_planes(const Picture& picture);
+/// Relative luminance of the three, linear.
+Plane luminance_plane(const Picture& picture);
+/// Throws Error that names both sizes where they differ.
+void require_same_size(const Picture& image, const Picture& reference);
+
+/// Odd-sized kernels applied to rows and columns (as correlations); the border's values continue outside.
+Plane filter_separable(const Plane& in, std::span<const double> along_x, std::span<const double> along_y);
+/// Gaussian of the given standard deviation in pixels at -radius ... radius, normalised to sum 1.
+std::vector<double> gaussian_kernel(double deviation, int radius);
+
+}  // namespace ajar

@@ -1,0 +1,149 @@
+#include <fmt/format.h>
+
+#include "ajar/core/error.h"
+#include "ajar/scene/bsdf.h"
+#include "ajar/scene/bsdf/table.h"
+#include "ajar/scene/scene.h"
+#include "rough.h"
+
+namespace ajar {
+
+float rough_transmittance(Microfacet kind, float alpha, float ior, float cos) {
+  constexpr int n = 16;
+  const Facets f{alpha, alpha, kind};
+  const Vec3 wo{safe_sqrt(1 - cos * cos), 0, std::max(cos, 1e-6f)};
+  // Midpoints after u = t^2 (3 - 2t), which flattens the integrand's steep ends.
+  const auto at = [](int i) { return (float(i) + 0.5f) / n; };
+  const auto warp = [](float t) { return t * t * (3 - 2 * t); };
+  const auto density = [](float t) { return 6 * t * (1 - t); };
+  double sum = 0, weights = 0;
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      const double weight = density(at(i)) * density(at(j));
+      weights += weight;
+      const Vec3 m = sample_facet(f, wo, {warp(at(i)), warp(at(j))});
+      float cos_t;
+      const float through = 1 - fresnel_dielectric(glm::dot(wo, m), ior, cos_t);
+      const Vec3 wi = refracted(wo, m, ior, cos_t);
+      if (wi.z < 0) sum += weight * through * 2 * facet_visibility(f, wi) * -wi.z;
+    }
+  }
+  return float(sum / weights);
+}
+
+namespace {
+
+constexpr int max_nesting = 64;
+
+// Where the material turns or bends the normal, in order: branches of a sum must agree, for they share one frame.
+struct Outline {
+  int lobes = 0;
+  std::vector<uint32_t> bends;
+  std::string problem;
+};
+
+Outline outline_of(const Scene& scene, uint32_t id, int depth);
+
+Outline outline_of_branches(const Scene& scene, const Material& m, int depth) {
+  Outline sum;
+  bool first = true;
+  for (const uint32_t nested : m.nested) {
+    if (nested == none) continue;
+    const Outline branch = outline_of(scene, nested, depth + 1);
+    if (!branch.problem.empty()) return branch;
+    sum.lobes += branch.lobes;
+    if (branch.lobes == 0) continue;  // null scatters nothing
+    if (!first && branch.bends != sum.bends)
+      sum.problem =
+          "its nested bsdfs bend or turn the normal differently: put twosided, bumpmap or normalmap around the sum";
+    sum.bends = branch.bends;
+    first = false;
+  }
+  return sum;
+}
+
+Outline outline_of(const Scene& scene, uint32_t id, int depth) {
+  if (depth > max_nesting) return {0, {}, fmt::format("nested more than {} deep, or inside itself", max_nesting)};
+  if (id >= scene.materials.size()) return {0, {}, "a nested bsdf is missing"};
+  const Material& m = scene.materials[id];
+  Outline outline;
+  switch (m.kind) {
+    case MaterialKind::null:
+      return outline;
+    case MaterialKind::blend:
+      if (m.nested[0] == none || m.nested[1] == none) return {0, {}, "a nested bsdf is missing"};
+      [[fallthrough]];
+    case MaterialKind::mixture:
+      return outline_of_branches(scene, m, depth);
+    case MaterialKind::mask:
+      return outline_of(scene, m.nested[0], depth + 1);
+    case MaterialKind::twosided: {
+      outline = outline_of(scene, m.nested[0], depth + 1);
+      const Outline behind = m.nested[1] == none ? Outline{} : outline_of(scene, m.nested[1], depth + 1);
+      outline.lobes = std::max(outline.lobes, behind.lobes);
+      if (outline.problem.empty()) outline.problem = behind.problem;
+      outline.bends.push_back(uint32_t(MaterialKind::twosided) << 24);
+      return outline;
+    }
+    case MaterialKind::bumpmap:
+    case MaterialKind::normalmap:
+      outline = outline_of(scene, m.nested[0], depth + 1);
+      outline.bends.push_back(id);
+      return outline;
+    default:
+      outline.lobes = 1;
+      return outline;
+  }
+}
+
+void fill_table(Material& m) {
+  const bool textured = m.alpha_u.texture != none;
+  const int rows = textured ? table_alphas + 1 : 1;
+  m.entering_table.resize(size_t(rows) * table_row);
+  for (int r = 0; r < rows; ++r) {
+    const float alpha = textured ? sqr(float(r) / table_alphas) : m.alpha_u.value.x;
+    float* row = m.entering_table.data() + r * table_row;
+    double mean = 0;
+    for (int i = 0; i <= table_cosines; ++i) {
+      const float cos = float(i) / table_cosines;
+      row[1 + i] = rough_transmittance(m.distribution, std::max(alpha, min_alpha), m.ior, cos);
+      mean += (i == table_cosines ? 1 : 2) * double(cos) * row[1 + i];
+    }
+    row[0] = float(mean / table_cosines);
+  }
+}
+
+bool same_boundary(const Material& a, const Material& b) {
+  return a.ior == b.ior && a.distribution == b.distribution &&
+         (a.alpha_u.texture != none ? b.alpha_u.texture != none
+                                    : b.alpha_u.texture == none && a.alpha_u.value == b.alpha_u.value);
+}
+
+}  // namespace
+
+std::string material_problem(const Scene& scene, uint32_t material) {
+  const Outline outline = outline_of(scene, material, 0);
+  if (!outline.problem.empty()) return outline.problem;
+  if (outline.lobes > max_lobes)
+    return fmt::format("it adds up to {} elementary bsdfs, {} are possible: leave some out", outline.lobes, max_lobes);
+  return {};
+}
+
+int lobe_count(const Scene& scene, uint32_t material) { return outline_of(scene, material, 0).lobes; }
+
+void prepare_materials(Scene& scene) {
+  for (uint32_t i = 0; i < scene.materials.size(); ++i) {
+    if (const std::string problem = material_problem(scene, i); !problem.empty())
+      throw Error(fmt::format("bsdf {} of the scene: {}", i, problem));
+    Material& m = scene.materials[i];
+    m.entering = float(1 - fresnel_diffuse(m.ior));
+    if (m.kind != MaterialKind::roughplastic) continue;
+    m.entering_table.clear();
+    for (uint32_t j = 0; j < i && m.entering_table.empty(); ++j)
+      if (scene.materials[j].kind == m.kind && same_boundary(scene.materials[j], m))
+        m.entering_table = scene.materials[j].entering_table;
+    if (m.entering_table.empty()) fill_table(m);
+  }
+}
+
+}  // namespace ajar

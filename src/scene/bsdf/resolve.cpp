@@ -1,0 +1,240 @@
+#include "ajar/scene/bsdf.h"
+#include "ajar/scene/scene.h"
+#include "visit.h"
+
+namespace ajar {
+namespace {
+
+struct Resolver {
+  const Scene& scene;
+  Surface& surface;
+  Bsdf& out;
+  bool back;            // the viewer is behind ng
+  bool turned = false;  // frame.n was turned to the viewer; until the end s and t stay, as in a mirror
+};
+
+Rgb look(const Resolver& r, const Slot& slot) {
+  return slot.texture == none ? slot.value : eval(r.scene, slot, r.surface);
+}
+float look_scalar(const Resolver& r, const Slot& slot) {
+  if (slot.texture != none) return eval_scalar(r.scene, slot, r.surface);
+  const Rgb& c = slot.value;
+  return c.x == c.y && c.y == c.z ? c.x : luminance(c);
+}
+// Weights of luminance do not add up to 1 in the last bit; a mask that is 1 must not let 1e-7 pass.
+float look_unit(const Resolver& r, const Slot& slot) {
+  const float x = look_scalar(r, slot);
+  return x > 1 - 1e-6f ? 1 : std::max(x, 0.0f);
+}
+
+// Takes n (any length) as the new normal, on the side of ng that the material faces.
+void bend(Resolver& r, Vec3 n) {
+  const float l2 = length2(n);
+  if (!(l2 > 0) || !std::isfinite(l2)) return;
+  n *= 1 / std::sqrt(l2);
+  if (glm::dot(n, r.surface.ng) * (r.turned ? -1.0f : 1.0f) < 0) n = -n;
+  r.surface.frame = make_frame(n, r.surface.frame.s);
+  if (r.turned) r.surface.frame.t = -r.surface.frame.t;
+}
+
+// Displacement of the surface along its shading normal by the height h (Blinn 1978): tangents get h_u n and h_v n.
+void bend_by_height(Resolver& r, const Material& m) {
+  const Vec2 slope = eval_gradient(r.scene, m.map, r.surface) * m.map_scale;
+  const Vec3 n = r.surface.frame.n, &dpdu = r.surface.dpdu, &dpdv = r.surface.dpdv;
+  const Vec3 u = dpdu + n * (slope.x - glm::dot(n, dpdu)), v = dpdv + n * (slope.y - glm::dot(n, dpdv));
+  const Vec3 bent = glm::cross(u, v);
+  bend(r, glm::dot(bent, n) < 0 ? -bent : bent);
+}
+
+void bend_by_map(Resolver& r, const Material& m) {
+  const Vec3 c = 2.0f * eval(r.scene, m.map, r.surface) - 1.0f;
+  bend(r, r.surface.frame.to_world(c));
+}
+
+Facets facets(const Resolver& r, const Material& m) {
+  return {std::max(look_scalar(r, m.alpha_u), min_alpha), std::max(look_scalar(r, m.alpha_v), min_alpha),
+          m.distribution};
+}
+
+// Diffuse light that enters, bounces inside under the boundary and leaves: internal reflectance is 1 - entering /
+// eta^2, since a boundary lets the same pass both ways but for the basic solid angle.
+Rgb under_boundary(const Material& m, const Rgb& rho, float entering) {
+  if (!m.nonlinear) return rho / entering;
+  return rho / (m.ior * m.ior * (Rgb(1) - rho) + rho * entering);
+}
+float specular_share(const Rgb& specular, const Rgb& diffuse) {
+  const float s = max_component(specular), d = max_component(diffuse);
+  return s + d > 0 ? s / (s + d) : 0.5f;
+}
+
+void set_plastic(const Resolver& r, const Material& m, Lobe& lobe) {
+  const Rgb rho = look(r, m.reflectance), specular = look(r, m.specular);
+  lobe.kind = LobeKind::plastic;
+  lobe.plastic = {under_boundary(m, rho, m.entering), specular, m.ior, specular_share(specular, rho), m.entering};
+}
+
+void set_roughplastic(const Resolver& r, const Material& m, Lobe& lobe) {
+  const Rgb rho = look(r, m.reflectance), specular = look(r, m.specular);
+  const float alpha = std::max(look_scalar(r, m.alpha_u), min_alpha);
+  const TableRow row = table_row_of(m, alpha);
+  lobe.kind = LobeKind::roughplastic;
+  lobe.roughplastic = {row.at, row.between,   Rgb(0), specular, m.ior, specular_share(specular, rho),
+                       alpha,  m.distribution};
+  lobe.roughplastic.base = under_boundary(m, rho, entering(lobe.roughplastic));
+}
+
+void set_principled(const Resolver& r, const Material& m, Lobe& lobe) {
+  lobe.kind = LobeKind::principled;
+  lobe.principled = {look(r, m.reflectance),
+                     look_unit(r, m.roughness),
+                     std::sqrt(1 - 0.9f * look_unit(r, m.anisotropic)),
+                     look_unit(r, m.metallic),
+                     look_unit(r, m.spec_trans),
+                     std::abs(m.ior - 1) < min_ior_step ? 1 + min_ior_step : m.ior,
+                     look_unit(r, m.spec_tint),
+                     look_scalar(r, m.sheen),
+                     look_unit(r, m.sheen_tint),
+                     look_unit(r, m.flatness),
+                     look_scalar(r, m.clearcoat),
+                     0.1f + (0.001f - 0.1f) * look_unit(r, m.clearcoat_gloss)};
+}
+
+// Writes the lobe of an elementary material; false where it absorbs everything.
+bool set_lobe(const Resolver& r, const Material& m, Lobe& lobe) {
+  switch (m.kind) {
+    case MaterialKind::conductor:
+      lobe.kind = LobeKind::conductor;
+      lobe.conductor = {look(r, m.specular), m.eta, m.k};
+      return true;
+    case MaterialKind::roughconductor:
+      lobe.kind = LobeKind::roughconductor;
+      lobe.roughconductor = {look(r, m.specular), m.eta, m.k, facets(r, m)};
+      return true;
+    case MaterialKind::roughdielectric:
+      if (std::abs(m.ior - 1) >= min_ior_step) {
+        lobe.kind = LobeKind::roughdielectric;
+        lobe.roughdielectric = {look(r, m.specular), look(r, m.transmittance), m.ior, facets(r, m)};
+        return true;
+      }
+      [[fallthrough]];
+    case MaterialKind::dielectric:
+      lobe.kind = LobeKind::dielectric;
+      lobe.dielectric = {look(r, m.specular), look(r, m.transmittance), m.ior};
+      return true;
+    case MaterialKind::thindielectric:
+      lobe.kind = LobeKind::thindielectric;
+      lobe.thindielectric = {look(r, m.specular), look(r, m.transmittance), m.ior};
+      return true;
+    case MaterialKind::plastic:
+      set_plastic(r, m, lobe);
+      return true;
+    case MaterialKind::roughplastic:
+      set_roughplastic(r, m, lobe);
+      return true;
+    case MaterialKind::phong: {
+      const Rgb diffuse = look(r, m.reflectance), specular = look(r, m.specular);
+      lobe.kind = LobeKind::phong;
+      lobe.phong = {diffuse, specular, std::max(look_scalar(r, m.exponent), 0.0f), specular_share(specular, diffuse)};
+      return true;
+    }
+    case MaterialKind::principled:
+      set_principled(r, m, lobe);
+      return true;
+    default:
+      lobe.kind = LobeKind::diffuse;
+      lobe.diffuse = {look(r, m.reflectance)};
+      return !is_black(lobe.diffuse.reflectance);
+  }
+}
+
+bool is_delta(LobeKind k) {
+  return k == LobeKind::conductor || k == LobeKind::dielectric || k == LobeKind::thindielectric ||
+         k == LobeKind::plastic;
+}
+bool is_smooth(LobeKind k) { return !is_delta(k) || k == LobeKind::plastic; }
+
+void add(Resolver& r, uint32_t id, float weight);
+
+void add_leaf(Resolver& r, const Material& m, float weight) {
+  Bsdf& out = r.out;
+  if (out.count == max_lobes || !set_lobe(r, m, out.lobes[out.count])) return;
+  const LobeKind kind = out.lobes[out.count].kind;
+  out.has_delta |= is_delta(kind);
+  out.has_smooth |= is_smooth(kind);
+  out.weights[out.count++] = weight;
+}
+
+// Follows one nested material; branches recur.
+void add(Resolver& r, uint32_t id, float weight) {
+  while (weight > 0) {
+    const Material& m = r.scene.materials[id];
+    id = m.nested[0];
+    switch (m.kind) {
+      case MaterialKind::twosided:
+        if (r.back && m.nested[1] != none) id = m.nested[1];
+        if (r.back && !r.turned) r.surface.frame.n = -r.surface.frame.n, r.turned = true;
+        break;
+      case MaterialKind::mask: {
+        const float opacity = look_unit(r, m.weight);
+        r.out.opacity -= weight * (1 - opacity);
+        weight *= opacity;
+        break;
+      }
+      case MaterialKind::blend: {
+        const float second = look_unit(r, m.weight);
+        add(r, m.nested[0], weight * (1 - second));
+        weight *= second;
+        id = m.nested[1];
+        break;
+      }
+      case MaterialKind::mixture:
+        for (int i = 0; i < 4; ++i)
+          if (m.nested[i] != none) add(r, m.nested[i], weight * m.weights[i]);
+        return;
+      case MaterialKind::bumpmap:
+        bend_by_height(r, m);
+        break;
+      case MaterialKind::normalmap:
+        bend_by_map(r, m);
+        break;
+      case MaterialKind::null:
+        r.out.opacity -= weight;
+        return;
+      default:
+        add_leaf(r, m, weight);
+        return;
+    }
+  }
+}
+
+// Probabilities in proportion to the albedo at a fixed angle: independent of direction, so that both densities share
+// them.
+void choose(Bsdf& out) {
+  const Vec3 tilted{0.6f, 0, 0.8f};
+  float sum = 1 - out.opacity;
+  for (int i = 0; i < out.count; ++i) {
+    const Rgb a = visit(out.lobes[i], [&](const auto& lobe) { return albedo(lobe, tilted); });
+    sum += out.choice[i] = out.weights[i] * std::max(max_component(a), 1e-3f);
+  }
+  if (!(sum > 0)) return;
+  for (int i = 0; i < out.count; ++i) out.choice[i] /= sum;
+  out.pass = (1 - out.opacity) / sum;
+  out.has_delta |= out.pass > 0;
+}
+
+}  // namespace
+
+void resolve(const Scene& scene, Surface& surface, const Vec3& wo, Bsdf& out) {
+  out.count = 0;
+  out.has_smooth = out.has_delta = false;
+  out.opacity = 1;
+  out.pass = 0;
+  Resolver r{scene, surface, out, glm::dot(wo, surface.ng) < 0};
+  add(r, scene.shapes[surface.shape].material, 1);
+  if (r.turned) surface.frame.t = -surface.frame.t;
+  out.choice[0] = 1;
+  out.opacity = std::max(out.opacity, 0.0f);
+  if (out.count != 1 || out.opacity < 1) choose(out);
+}
+
+}  // namespace ajar

@@ -1,0 +1,130 @@
+#include "ajar/scene/filter.h"
+
+namespace ajar {
+namespace {
+
+constexpr int bins = 512;
+
+double sinc(double x) { return x == 0 ? 1 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x); }
+
+// Mitchell and Netravali 1988, Reconstruction Filters in Computer Graphics, equation 8; support 2.
+double cubic(double x, double B, double C) {
+  x = std::abs(x);
+  if (x >= 2) return 0;
+  if (x < 1) return ((12 - 9 * B - 6 * C) * x * x * x + (-18 + 12 * B + 6 * C) * x * x + (6 - 2 * B)) / 6;
+  return ((-B - 6 * C) * x * x * x + (6 * B + 30 * C) * x * x + (-12 * B - 48 * C) * x + (8 * B + 24 * C)) / 6;
+}
+
+// The kernel's formula, not normalised. A radius other than the usual one stretches the cubics and cuts the others.
+double formula(const Filter& f, double x) {
+  switch (f.kind) {
+    case FilterKind::gaussian: {
+      const double k = -0.5 / (double(f.a) * f.a), r = f.radius;
+      return std::exp(k * x * x) - std::exp(k * r * r);
+    }
+    case FilterKind::mitchell:
+      return cubic(2 * x / f.radius, f.a, f.b);
+    case FilterKind::catmullrom:
+      return cubic(2 * x / f.radius, 0, 0.5);
+    case FilterKind::lanczos:
+      return std::abs(x) >= f.a ? 0 : sinc(x) * sinc(x / f.a);
+    default:
+      return 1;
+  }
+}
+
+float usual_radius(FilterKind kind, float a) {
+  switch (kind) {
+    case FilterKind::box:
+      return 0.5f;
+    case FilterKind::tent:
+      return 1;
+    case FilterKind::gaussian:
+      return 4 * a;
+    case FilterKind::lanczos:
+      return a;
+    default:
+      return 2;
+  }
+}
+
+// Integral of the absolute value of a line from a to b over a unit interval.
+double absolute_area(double a, double b) {
+  return a * b < 0 ? (a * a + b * b) / (2 * std::abs(a - b)) : std::abs(a + b) / 2;
+}
+
+void fill_tables(Filter& f) {
+  std::vector<double> values(bins + 1);
+  for (int i = 0; i <= bins; ++i) values[i] = formula(f, (2.0 * i / bins - 1) * f.radius);
+  const double step = 2.0 * f.radius / bins;
+  double area = 0, absolute = 0;
+  for (int i = 0; i < bins; ++i) {
+    area += (values[i] + values[i + 1]) / 2 * step;
+    absolute += absolute_area(values[i], values[i + 1]) * step;
+  }
+  f.table.resize(bins + 1);
+  f.cdf.resize(bins + 1);
+  f.sign_norm = float(absolute / area);
+  double sum = 0;
+  for (int i = 0; i <= bins; ++i) {
+    f.table[i] = float(values[i] / area);
+    f.cdf[i] = float(sum / absolute);
+    if (i < bins) sum += absolute_area(values[i], values[i + 1]) * step;
+  }
+  f.cdf[bins] = 1;
+}
+
+// Place in [0,1] up to which a line from a >= 0 to b >= 0 over the unit interval has the share u of its integral.
+float invert_line(float a, float b, float u) {
+  const float root = std::sqrt(a * a + u * (b * b - a * a));
+  return a + root > 0 ? u * (a + b) / (a + root) : u;
+}
+
+// The same for the absolute value, where the line may cross zero.
+float invert_absolute_line(float a, float b, float u) {
+  if (a * b >= 0) return invert_line(std::abs(a), std::abs(b), u);
+  const float zero = a / (a - b), first = a * a / (a * a + b * b);
+  return u < first ? zero * invert_line(1, 0, u / first)
+                   : zero + (1 - zero) * invert_line(0, 1, (u - first) / (1 - first));
+}
+
+float sample_table(const Filter& f, float u, float& weight) {
+  uint32_t i = 0;
+  for (uint32_t half = bins / 2; half > 0; half /= 2) i += f.cdf[i + half] <= u ? half : 0;
+  const float a = f.table[i], b = f.table[i + 1], share = (u - f.cdf[i]) / (f.cdf[i + 1] - f.cdf[i]);
+  const float in_bin = std::clamp(invert_absolute_line(a, b, share), 0.0f, 1.0f);
+  weight *= a + (b - a) * in_bin < 0 ? -f.sign_norm : f.sign_norm;
+  return ((float(i) + in_bin) * (2.0f / bins) - 1) * f.radius;
+}
+
+float sample_tent(float u) { return u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 - 2 * u); }
+
+}  // namespace
+
+Filter make_filter(FilterKind kind, float radius, float a, float b) {
+  if (kind == FilterKind::gaussian && a == 0) a = 0.5f;
+  if (kind == FilterKind::lanczos && a == 0) a = 3;
+  if (kind == FilterKind::mitchell && a == 0 && b == 0) a = b = 1.0f / 3;
+  Filter f{kind, radius > 0 ? radius : usual_radius(kind, a), a, b, {}, {}, 1};
+  if (kind != FilterKind::box && kind != FilterKind::tent) fill_tables(f);
+  return f;
+}
+
+float eval(const Filter& f, float x) {
+  if (f.kind == FilterKind::box) return x >= -f.radius && x < f.radius ? 0.5f / f.radius : 0;
+  if (f.kind == FilterKind::tent) return std::max(0.0f, f.radius - std::abs(x)) / (f.radius * f.radius);
+  const float at = (x / f.radius + 1) * (bins / 2);
+  if (!(at >= 0 && at < bins)) return 0;
+  const int i = int(at);
+  return f.table[i] + (f.table[i + 1] - f.table[i]) * (at - float(i));
+}
+
+Vec2 sample(const Filter& f, const Vec2& u, float& weight) {
+  weight = 1;
+  if (f.kind == FilterKind::box) return (2.0f * u - 1.0f) * f.radius;
+  if (f.kind == FilterKind::tent) return Vec2(sample_tent(u.x), sample_tent(u.y)) * f.radius;
+  const float x = sample_table(f, u.x, weight);
+  return {x, sample_table(f, u.y, weight)};
+}
+
+}  // namespace ajar

@@ -1,0 +1,141 @@
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+#include "ajar/core/error.h"
+#include "ajar/scene/geometry.h"
+
+namespace ajar {
+namespace {
+
+struct Box {
+  Vec3 lo{infinity}, hi{-infinity};
+  bool empty() const { return !(lo.x <= hi.x); }
+  void add(const Vec3& p) { lo = glm::min(lo, p), hi = glm::max(hi, p); }
+  void add(const Box& b) { lo = glm::min(lo, b.lo), hi = glm::max(hi, b.hi); }
+};
+
+// Calls f(range, value) over large arrays in parallel and joins the values; the result does not depend on the division.
+template <class T, class F, class Join>
+T reduce(size_t n, const T& identity, const F& f, const Join& join) {
+  return tbb::parallel_reduce(tbb::blocked_range<size_t>(0, n, 16384), identity, f, join);
+}
+
+Box box_of(const std::vector<Vec3>& points) {
+  return reduce(
+      points.size(), Box{},
+      [&](const tbb::blocked_range<size_t>& r, Box b) {
+        for (size_t i = r.begin(); i != r.end(); ++i) b.add(points[i]);
+        return b;
+      },
+      [](Box a, const Box& b) {
+        a.add(b);
+        return a;
+      });
+}
+
+// Box of the unit object under its transform; its extent along each world axis has a closed form.
+Box box_of(const Shape& shape) {
+  const Vec3 x(shape.to_world[0]), y(shape.to_world[1]), z(shape.to_world[2]), o(shape.to_world[3]);
+  const Vec3 ring = glm::sqrt(x * x + y * y);
+  Box b;
+  if (shape.kind == ShapeKind::sphere) {
+    const Vec3 r = glm::sqrt(x * x + y * y + z * z);
+    b.add(o - r), b.add(o + r);
+  } else {
+    b.add(o - ring), b.add(o + ring);
+    if (shape.kind == ShapeKind::cylinder) b.add(o + z - ring), b.add(o + z + ring);
+  }
+  return b;
+}
+
+Box box_of(const Mat4& m, const Box& box) {
+  Box b;
+  if (box.empty()) return b;
+  for (int i = 0; i < 8; ++i)
+    b.add(Vec3(m * Vec4(i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y, i & 4 ? box.hi.z : box.lo.z, 1)));
+  return b;
+}
+
+float farthest2(const std::vector<Vec3>& points, const Vec3& center) {
+  return reduce(
+      points.size(), 0.0f,
+      [&](const tbb::blocked_range<size_t>& r, float most) {
+        for (size_t i = r.begin(); i != r.end(); ++i) most = std::max(most, length2(points[i] - center));
+        return most;
+      },
+      [](float a, float b) { return std::max(a, b); });
+}
+
+float farthest2(const Box& box, const Vec3& center) {
+  return box.empty() ? 0 : length2(glm::max(glm::abs(box.lo - center), glm::abs(box.hi - center)));
+}
+
+bool is_mesh(const Shape& s) { return s.kind == ShapeKind::mesh; }
+
+// Bounding sphere about the middle of the bounding box. Meshes by their vertices, the rest by their boxes.
+void set_bounds(Scene& scene) {
+  std::vector<Box> shapes, groups(scene.groups), instances;
+  for (const Shape& s : scene.shapes) shapes.push_back(is_mesh(s) ? box_of(scene.meshes[s.mesh].positions) : box_of(s));
+  Box all;
+  for (size_t i = 0; i < shapes.size(); ++i)
+    (scene.shapes[i].group == none ? all : groups[scene.shapes[i].group]).add(shapes[i]);
+  for (const Instance& i : scene.instances) instances.push_back(box_of(i.to_world, groups[i.group]));
+  for (const Box& b : instances) all.add(b);
+  scene.center = Vec3(0), scene.radius = 1;
+  if (all.empty()) return;
+  scene.center = all.lo * 0.5f + all.hi * 0.5f;
+  float most = 0;
+  for (size_t i = 0; i < shapes.size(); ++i) {
+    if (scene.shapes[i].group != none) continue;
+    most =
+        std::max(most, is_mesh(scene.shapes[i]) ? farthest2(scene.meshes[scene.shapes[i].mesh].positions, scene.center)
+                                                : farthest2(shapes[i], scene.center));
+  }
+  for (const Box& b : instances) most = std::max(most, farthest2(b, scene.center));
+  const float radius = std::sqrt(most) * 1.0001f + 1e-5f * max_abs(scene.center);
+  if (!(radius < 1e18f) || !is_finite(scene.center))
+    throw Error("scene: it reaches farther than 1e18 units from its middle; check the transforms");
+  if (radius > 0) scene.radius = radius;
+}
+
+void set_areas(Mesh& mesh) {
+  std::vector<float> areas(mesh.triangles.size());
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, areas.size(), 4096), [&](const auto& r) {
+    for (size_t i = r.begin(); i != r.end(); ++i) areas[i] = triangle_area(mesh, uint32_t(i));
+  });
+  mesh.area = Distribution(areas);
+  mesh.total_area = mesh.area.sum;
+}
+
+void prepare_light(Scene& scene, uint32_t id) {
+  Light& light = scene.lights[id];
+  light.textured = light.radiance.texture != none;
+  if (light.kind == LightKind::area && is_mesh(scene.shapes[light.shape]))
+    set_areas(scene.meshes[scene.shapes[light.shape].mesh]);
+  if (light.kind == LightKind::constant || light.kind == LightKind::envmap) scene.infinite_lights.push_back(id);
+  if (light.kind != LightKind::envmap && light.kind != LightKind::spot) return;
+  const glm::dmat3 linear(light.to_world);
+  const double volume = std::abs(glm::determinant(linear));
+  light.to_local = Mat3(glm::inverse(linear));
+  if (!(volume > 0) || !is_finite(light.to_local[0] + light.to_local[1] + light.to_local[2]))
+    throw Error(fmt::format("light {}: its to_world matrix cannot be inverted; repair the transform", id));
+}
+
+}  // namespace
+
+void finish(Scene& scene) {
+  set_bounds(scene);
+  prepare_materials(scene);
+  scene.infinite_lights.clear();
+  std::vector<float> weights;
+  for (uint32_t i = 0; i < scene.lights.size(); ++i) {
+    prepare_light(scene, i);
+    weights.push_back(power(scene, i) * scene.lights[i].sampling_weight);
+  }
+  for (float& w : weights) w = std::min(w, std::numeric_limits<float>::max());
+  scene.light_choice = Distribution(weights);
+}
+
+}  // namespace ajar

@@ -1,0 +1,276 @@
+#include "ajar/scene/geometry.h"
+
+#include "ajar/core/warp.h"
+
+namespace ajar {
+namespace {
+
+// Offsets are this many times the magnitudes that went into a point: 4 units in the last place of each. The bound of
+// the barycentric sum is 3 (Pharr et al. 2016, section 3.9), the ray tracer's own rounding takes the rest.
+constexpr float error_scale = 0x1p-21f;
+constexpr float least_error = 1e-30f;
+
+Vec3 map_vector(const Mat4& m, const Vec3& v) { return Vec3(m[0]) * v.x + Vec3(m[1]) * v.y + Vec3(m[2]) * v.z; }
+Vec3 map_point(const Mat4& m, const Vec3& p) { return map_vector(m, p) + Vec3(m[3]); }
+// By the transpose of m's linear part: normals, with m the inverse of the transform.
+Vec3 map_normal(const Mat4& m, const Vec3& n) {
+  return {glm::dot(Vec3(m[0]), n), glm::dot(Vec3(m[1]), n), glm::dot(Vec3(m[2]), n)};
+}
+// Largest magnitude that occurs when m maps p.
+float map_magnitude(const Mat4& m, const Vec3& p) {
+  return max_component(glm::abs(Vec3(m[0])) * std::abs(p.x) + glm::abs(Vec3(m[1])) * std::abs(p.y) +
+                       glm::abs(Vec3(m[2])) * std::abs(p.z) + glm::abs(Vec3(m[3])));
+}
+
+// Unit vector along v, also where its square under- or overflows; fallback where v is zero or not finite.
+Vec3 unit(const Vec3& v, const Vec3& fallback) {
+  const float l2 = length2(v);
+  if (l2 > 1e-30f && l2 < 1e30f) return v / std::sqrt(l2);
+  const float m = max_abs(v);
+  if (!(m > 0 && m < infinity)) return fallback;
+  const Vec3 scaled = v / m;
+  return scaled / std::sqrt(length2(scaled));
+}
+
+struct Corners {
+  Vec3 p[3];
+};
+Corners corners(const Mesh& mesh, const glm::uvec3& t) {
+  return {{mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]}};
+}
+
+// Twice the area times the normal; edges scaled first where the product would underflow.
+Vec3 normal_of(const Corners& c) {
+  const Vec3 a = c.p[1] - c.p[0], b = c.p[2] - c.p[0];
+  const Vec3 n = glm::cross(a, b);
+  if (length2(n) > 1e-30f) return n;
+  const float m = std::max(max_abs(a), max_abs(b));
+  return m > 0 ? glm::cross(a / m, b / m) : n;
+}
+
+template <class T>
+T interpolate(const std::vector<T>& values, const glm::uvec3& t, const Vec2& bary) {
+  return values[t.x] * (1 - bary.x - bary.y) + values[t.y] * bary.x + values[t.z] * bary.y;
+}
+
+// Position, error, ng and uv of a point of a triangle, in the mesh's space.
+void set_point(const Mesh& mesh, const glm::uvec3& t, const Corners& c, Surface& s) {
+  const Vec2 b = s.bary;
+  s.p = c.p[0] * (1 - b.x - b.y) + c.p[1] * b.x + c.p[2] * b.y;
+  s.error = error_scale * std::max(max_abs(c.p[0]), std::max(max_abs(c.p[1]), max_abs(c.p[2]))) + least_error;
+  s.ng = unit(normal_of(c), Vec3(0, 0, 1));
+  s.uv = mesh.uvs.empty() ? b : interpolate(mesh.uvs, t, b);
+}
+
+// Solves p = p0 + dpdu u + dpdv v on the triangle.
+void set_tangents(const Mesh& mesh, const glm::uvec3& t, const Corners& c, Surface& s) {
+  if (mesh.uvs.empty()) return;
+  const Vec2 a = mesh.uvs[t.y] - mesh.uvs[t.x], b = mesh.uvs[t.z] - mesh.uvs[t.x];
+  const float det = a.x * b.y - a.y * b.x;
+  if (!(std::abs(det) > 1e-8f * (std::abs(a.x * b.y) + std::abs(a.y * b.x)))) return;
+  const Vec3 e1 = c.p[1] - c.p[0], e2 = c.p[2] - c.p[0];
+  const Vec3 dpdu = (e1 * b.y - e2 * a.y) / det, dpdv = (e2 * a.x - e1 * b.x) / det;
+  if (is_finite(dpdu) && is_finite(dpdv)) s.dpdu = dpdu, s.dpdv = dpdv;
+}
+
+float magnification(const Mat4& m) {
+  return std::sqrt(length2(Vec3(m[0])) + length2(Vec3(m[1])) + length2(Vec3(m[2])));
+}
+
+// The ray tracer maps rays into the group in single precision: more rounding than a triangle in world space sees.
+float instance_error(const Instance& instance, const Vec3& p) {
+  return 3 * error_scale * map_magnitude(instance.to_world, p);
+}
+
+void move_to_world(const Instance& instance, Surface& s, Vec3& shading) {
+  s.error = s.error * magnification(instance.to_world) + instance_error(instance, s.p);
+  s.p = map_point(instance.to_world, s.p);
+  s.ng = unit(map_normal(instance.to_object, s.ng), s.ng);
+  shading = map_normal(instance.to_object, shading);
+  s.dpdu = map_vector(instance.to_world, s.dpdu);
+  s.dpdv = map_vector(instance.to_world, s.dpdv);
+}
+
+void set_mesh_surface(const Scene& scene, Surface& s) {
+  const Mesh& mesh = scene.meshes[scene.shapes[s.shape].mesh];
+  const glm::uvec3 t = mesh.triangles[s.prim];
+  const Corners c = corners(mesh, t);
+  set_point(mesh, t, c, s);
+  set_tangents(mesh, t, c, s);
+  Vec3 shading = mesh.normals.empty() ? s.ng : interpolate(mesh.normals, t, s.bary);
+  if (s.instance != none) move_to_world(scene.instances[s.instance], s, shading);
+  Vec3 n = mesh.normals.empty() ? s.ng : unit(shading, s.ng);
+  if (glm::dot(n, s.ng) < 0) n = -n;
+  s.frame = make_frame(n, s.dpdu);
+}
+
+// Nearest point of the unit object; its normal; derivatives of position to u and v (of which accel's hits are made).
+struct UnitPoint {
+  glm::dvec3 p;
+  Vec3 n, dpdu, dpdv;
+};
+
+UnitPoint unit_point(ShapeKind kind, const glm::dvec3& q) {
+  const double rho = std::sqrt(q.x * q.x + q.y * q.y);
+  if (kind == ShapeKind::disk) {
+    const Vec3 around = 2 * pi * Vec3(float(-q.y), float(q.x), 0);
+    const Vec3 out = rho > 0 ? Vec3(float(q.x / rho), float(q.y / rho), 0) : Vec3(0);
+    return {{q.x, q.y, 0}, {0, 0, 1}, out, around};
+  }
+  if (kind == ShapeKind::cylinder) {
+    const glm::dvec3 p(rho > 0 ? q.x / rho : 1, rho > 0 ? q.y / rho : 0, q.z);
+    return {p, Vec3(float(p.x), float(p.y), 0), 2 * pi * Vec3(float(-p.y), float(p.x), 0), {0, 0, 1}};
+  }
+  const double r = std::sqrt(rho * rho + q.z * q.z);
+  const glm::dvec3 p = r > 0 ? q / r : glm::dvec3(0, 0, 1);
+  const double ring = std::sqrt(p.x * p.x + p.y * p.y);
+  const Vec3 down = ring > 0 ? Vec3(float(p.z * p.x / ring), float(p.z * p.y / ring), float(-ring)) : Vec3(0);
+  return {p, Vec3(p), 2 * pi * Vec3(float(-p.y), float(p.x), 0), pi * down};
+}
+
+// ng and tangents of a unit point in the space of the shape.
+void set_quadric_axes(const Shape& shape, const UnitPoint& at, Surface& s) {
+  s.ng = unit(map_normal(shape.to_object, shape.flip ? -at.n : at.n), at.n);
+  s.dpdu = map_vector(shape.to_world, at.dpdu);
+  s.dpdv = map_vector(shape.to_world, at.dpdv);
+}
+
+float quadric_error(const Shape& shape, const Vec3& p) {
+  return error_scale * (max_abs(p) + magnification(shape.to_world)) + least_error;
+}
+
+// In double: the ray may have started far away. The point on the ray is moved onto the object by a first-order step,
+// which leaves an error of the second order of a small distance.
+void set_quadric_surface(const Scene& scene, const Hit& hit, const Vec3& ray_o, const Vec3& ray_d, Surface& s) {
+  const Shape& shape = scene.shapes[s.shape];
+  const Instance* instance = s.instance == none ? nullptr : &scene.instances[s.instance];
+  glm::dvec3 p = glm::dvec3(ray_o) + double(hit.t) * glm::dvec3(ray_d);
+  if (instance) p = glm::dvec3(glm::dmat4(instance->to_object) * glm::dvec4(p, 1));
+  const glm::dvec3 q = glm::dmat4(shape.to_object) * glm::dvec4(p, 1);
+  const UnitPoint at = unit_point(shape.kind, q);
+  s.p = p + glm::dvec3(glm::dmat4(shape.to_world) * glm::dvec4(at.p - q, 0));
+  s.error = quadric_error(shape, s.p);
+  s.uv = hit.bary;
+  set_quadric_axes(shape, at, s);
+  Vec3 shading = s.ng;
+  if (instance) move_to_world(*instance, s, shading);
+  s.frame = make_frame(s.ng, s.dpdu);
+}
+
+// Unit object's point and (u, v) uniform in the parameters that are uniform by area on it.
+UnitPoint sample_unit(ShapeKind kind, const Vec2& u, Vec2& uv) {
+  if (kind == ShapeKind::sphere) {
+    const Vec3 w = to_sphere(u);
+    uv = {u.y, std::acos(std::clamp(w.z, -1.0f, 1.0f)) * inv_pi};
+    return {glm::dvec3(w), w, Vec3(0), Vec3(0)};
+  }
+  if (kind == ShapeKind::disk) {
+    const Vec2 d = to_disk(u);
+    const float turn = std::atan2(d.y, d.x) / (2 * pi);
+    uv = {std::sqrt(glm::dot(d, d)), turn < 0 ? turn + 1 : turn};
+    return {glm::dvec3(d, 0), {0, 0, 1}, Vec3(0), Vec3(0)};
+  }
+  const float phi = 2 * pi * u.x;
+  const Vec3 n(std::cos(phi), std::sin(phi), 0);
+  uv = u;
+  return {glm::dvec3(n.x, n.y, u.y), n, Vec3(0), Vec3(0)};
+}
+
+// World area per unit of height and of angle [rad] on a cylinder at the angle 2 pi u.
+double cylinder_stretch(const Shape& shape, double u) {
+  const double phi = 2 * std::numbers::pi * u;
+  const glm::dmat4 m(shape.to_world);
+  const glm::dvec3 around = glm::dvec3(m[0]) * -std::sin(phi) + glm::dvec3(m[1]) * std::cos(phi);
+  return glm::length(glm::cross(around, glm::dvec3(m[2])));
+}
+
+double quadric_area(const Shape& shape) {
+  const glm::dmat4 m(shape.to_world);
+  if (shape.kind == ShapeKind::sphere) return 4 * std::numbers::pi * glm::dot(glm::dvec3(m[0]), glm::dvec3(m[0]));
+  if (shape.kind == ShapeKind::disk)
+    return std::numbers::pi * glm::length(glm::cross(glm::dvec3(m[0]), glm::dvec3(m[1])));
+  constexpr int n = 256;  // equal steps around a period: exact to rounding
+  double sum = 0;
+  for (int i = 0; i < n; ++i) sum += cylinder_stretch(shape, double(i) / n);
+  return sum * 2 * std::numbers::pi / n;
+}
+
+float inverse(double area) { return area > 0 ? float(std::min(1 / area, 1e38)) : 0; }
+
+}  // namespace
+
+Surface make_surface(const Scene& scene, const Hit& hit, const Vec3& ray_o, const Vec3& ray_d) {
+  Surface s;
+  s.shape = hit.shape;
+  s.prim = hit.prim;
+  s.instance = hit.instance;
+  s.bary = hit.bary;
+  if (scene.shapes[hit.shape].kind == ShapeKind::mesh)
+    set_mesh_surface(scene, s);
+  else
+    set_quadric_surface(scene, hit, ray_o, ray_d, s);
+  return s;
+}
+
+Surface sample_area(const Scene& scene, uint32_t id, const Vec2& u, float& pdf) {
+  const Shape& shape = scene.shapes[id];
+  Surface s;
+  s.shape = id;
+  if (shape.kind == ShapeKind::mesh) {
+    const Mesh& mesh = scene.meshes[shape.mesh];
+    pdf = 0;
+    if (!(mesh.total_area > 0)) return s;
+    Vec2 in_triangle = u;
+    s.prim = mesh.area.sample(in_triangle.x);
+    s.bary = to_triangle(in_triangle);
+    const glm::uvec3 t = mesh.triangles[s.prim];
+    set_point(mesh, t, corners(mesh, t), s);
+  } else {
+    const UnitPoint at = sample_unit(shape.kind, u, s.uv);
+    s.p = map_point(shape.to_world, Vec3(at.p));
+    s.error = position_error(shape, s.p);
+    set_quadric_axes(shape, at, s);
+  }
+  pdf = area_pdf(scene, id, s.prim, s.uv);
+  return s;
+}
+
+float area_pdf(const Scene& scene, uint32_t id, uint32_t prim, const Vec2& uv) {
+  const Shape& shape = scene.shapes[id];
+  if (shape.kind == ShapeKind::mesh) {
+    const Mesh& mesh = scene.meshes[shape.mesh];
+    const float triangle = triangle_area(mesh, prim);
+    return mesh.total_area > 0 && triangle > 0 ? mesh.area.pdf(prim) / triangle : 0;
+  }
+  if (shape.kind == ShapeKind::cylinder) return inverse(2 * std::numbers::pi * cylinder_stretch(shape, uv.x));
+  return inverse(quadric_area(shape));
+}
+
+double area(const Scene& scene, uint32_t id) {
+  const Shape& shape = scene.shapes[id];
+  if (shape.kind != ShapeKind::mesh) return quadric_area(shape);
+  const Mesh& mesh = scene.meshes[shape.mesh];
+  double sum = 0;
+  for (uint32_t i = 0; i < mesh.triangles.size(); ++i) sum += triangle_area(mesh, i);
+  return sum;
+}
+
+Vec2 sphere_uv(const Shape& sphere, const Vec3& p) {
+  const Vec3 q = map_point(sphere.to_object, p);
+  const float turn = std::atan2(q.y, q.x) / (2 * pi);
+  return {turn < 0 ? turn + 1 : turn, std::atan2(std::sqrt(q.x * q.x + q.y * q.y), q.z) * inv_pi};
+}
+
+float position_error(const Shape& quadric, const Vec3& p) {
+  return quadric_error(quadric, p) + error_scale * max_abs(Vec3(quadric.to_world[3]));
+}
+
+float triangle_area(const Mesh& mesh, uint32_t triangle) {
+  const Corners c = corners(mesh, mesh.triangles[triangle]);
+  const glm::dvec3 a(c.p[0]);
+  const double twice = glm::length(glm::cross(glm::dvec3(c.p[1]) - a, glm::dvec3(c.p[2]) - a));
+  // Below this a density per area would overflow; nothing of that size lights anything.
+  return twice > 1e-30 && twice < 1e38 ? float(twice / 2) : 0;
+}
+
+}  // namespace ajar

@@ -1,0 +1,141 @@
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include "ajar/core/error.h"
+#include "ajar/scene/texture.h"
+
+namespace ajar {
+namespace {
+
+constexpr size_t most_bytes = size_t(2) << 30;
+constexpr int longest_side = 1 << 17;
+
+float srgb_to_linear(float x) { return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f); }
+
+// How stored numbers become linear ones. exponent 1: as they stand; 0: sRGB.
+struct Transfer {
+  float exponent = 1;
+  float operator()(float x) const {
+    if (exponent == 1) return x;
+    return exponent == 0 ? srgb_to_linear(x) : std::pow(std::max(x, 0.0f), exponent);
+  }
+};
+
+Transfer transfer_of(const OIIO::ImageSpec& spec, bool raw, float gamma) {
+  if (raw) return {1};
+  if (gamma > 0) return {gamma};
+  if (spec.format.basetype == OIIO::TypeDesc::HALF || spec.format.basetype == OIIO::TypeDesc::FLOAT ||
+      spec.format.basetype == OIIO::TypeDesc::DOUBLE)
+    return {1};
+  const float said = spec.get_float_attribute("oiio:Gamma", 0);
+  if (said > 0) return {said};
+  return {OIIO::Strutil::iequals(spec.get_string_attribute("oiio:ColorSpace"), "linear") ? 1.0f : 0.0f};
+}
+
+// Where the colours and alpha are among the file's channels; alpha -1: nowhere.
+struct Layout {
+  int color[3] = {0, 1, 2};
+  int colors = 3;
+  int alpha = -1;
+};
+
+Layout layout_of(const OIIO::ImageSpec& spec) {
+  const int r = spec.channelindex("R"), g = spec.channelindex("G"), b = spec.channelindex("B");
+  Layout layout;
+  layout.alpha = spec.alpha_channel;
+  if (r >= 0 && g >= 0 && b >= 0) {
+    layout.color[0] = r, layout.color[1] = g, layout.color[2] = b;
+  } else if (spec.nchannels < 3 || layout.alpha == 1 || spec.channelindex("Y") >= 0) {
+    layout.colors = 1;
+    layout.color[0] = std::max(spec.channelindex("Y"), 0);
+  }
+  return layout;
+}
+
+// Only what an image can hold: a damaged header must not ask for all memory.
+void check_size(const std::string& path, const OIIO::ImageSpec& spec) {
+  const size_t per_channel = spec.format == OIIO::TypeDesc::UINT8 ? 1 : sizeof(float);
+  if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1 || spec.nchannels > 256)
+    throw Error(fmt::format("{}: not a two-dimensional image ({}x{}x{}, {} channels): convert it", path, spec.width,
+                            spec.height, spec.depth, spec.nchannels));
+  if (spec.width > longest_side || spec.height > longest_side ||
+      size_t(spec.width) * size_t(spec.height) > most_bytes / (per_channel * size_t(spec.nchannels)))
+    throw Error(fmt::format("{}: {}x{} with {} channels is more than {} GiB decoded: make it smaller", path, spec.width,
+                            spec.height, spec.nchannels, most_bytes >> 30));
+}
+
+template <class T>
+std::vector<T> read_all(const std::string& path, OIIO::ImageInput& input, const OIIO::ImageSpec& spec,
+                        OIIO::TypeDesc type) {
+  std::vector<T> values(size_t(spec.width) * size_t(spec.height) * size_t(spec.nchannels));
+  if (!input.read_image(0, 0, 0, spec.nchannels, type, values.data()))
+    throw Error(fmt::format("{}: the image is damaged or cut off ({})", path, input.geterror()));
+  return values;
+}
+
+void keep_bytes(Image& image, const Layout& layout, int channels, const std::vector<uint8_t>& all) {
+  const size_t pixels = size_t(image.width) * size_t(image.height);
+  image.bytes.resize(pixels * size_t(image.channels));
+  for (size_t i = 0; i < pixels; ++i)
+    for (int c = 0; c < image.channels; ++c)
+      image.bytes[i * size_t(image.channels) + size_t(c)] = all[i * size_t(channels) + size_t(layout.color[c])];
+  if (layout.alpha < 0) return;
+  image.alpha.resize(pixels);
+  for (size_t i = 0; i < pixels; ++i) image.alpha[i] = all[i * size_t(channels) + size_t(layout.alpha)];
+}
+
+void keep_floats(Image& image, const Layout& layout, int channels, const Transfer& transfer, bool raw,
+                 const std::vector<float>& all) {
+  const size_t pixels = size_t(image.width) * size_t(image.height);
+  image.floats.resize(pixels * size_t(image.channels));
+  for (size_t i = 0; i < pixels; ++i)
+    for (int c = 0; c < image.channels; ++c) {
+      const float stored = all[i * size_t(channels) + size_t(layout.color[c])];
+      const float value = transfer(stored);
+      if (!std::isfinite(value) || (stored < 0 && !raw))
+        throw Error(fmt::format("{}: pixel ({}, {}) holds {}; repair the image (colours are finite and not negative)",
+                                image.name, i % size_t(image.width), i / size_t(image.width), stored));
+      image.floats[i * size_t(image.channels) + size_t(c)] = value;
+    }
+  if (layout.alpha < 0) return;
+  image.alpha.resize(pixels);
+  for (size_t i = 0; i < pixels; ++i) {
+    const float a = all[i * size_t(channels) + size_t(layout.alpha)];
+    image.alpha[i] = a > 0 ? uint8_t(std::min(a, 1.0f) * 255 + 0.5f) : 0;
+  }
+}
+
+// Fully opaque images need no alpha.
+void drop_idle_alpha(Image& image) {
+  if (std::all_of(image.alpha.begin(), image.alpha.end(), [](uint8_t a) { return a == 255; })) {
+    image.alpha.clear();
+    image.alpha.shrink_to_fit();
+  }
+}
+
+}  // namespace
+
+Image load_image(const std::string& path, bool raw, float gamma) {
+  OIIO::ImageSpec config;
+  config.attribute("oiio:UnassociatedAlpha", 1);  // colours as they are stored
+  const auto input = OIIO::ImageInput::open(path, &config);
+  if (!input) throw Error(fmt::format("{}: cannot read the image ({})", path, OIIO::geterror()));
+  const OIIO::ImageSpec spec = input->spec();
+  check_size(path, spec);
+  const Layout layout = layout_of(spec);
+  const Transfer transfer = transfer_of(spec, raw, gamma);
+  Image image;
+  image.name = path;
+  image.width = spec.width, image.height = spec.height, image.channels = layout.colors;
+  if (spec.format == OIIO::TypeDesc::UINT8) {
+    for (int i = 0; i < 256; ++i) image.decode[i] = transfer(float(i) / 255);
+    keep_bytes(image, layout, spec.nchannels, read_all<uint8_t>(path, *input, spec, OIIO::TypeDesc::UINT8));
+  } else {
+    keep_floats(image, layout, spec.nchannels, transfer, raw,
+                read_all<float>(path, *input, spec, OIIO::TypeDesc::FLOAT));
+  }
+  drop_idle_alpha(image);
+  return image;
+}
+
+}  // namespace ajar

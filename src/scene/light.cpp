@@ -1,0 +1,283 @@
+#include "ajar/scene/light.h"
+
+#include "ajar/core/frame.h"
+#include "ajar/core/warp.h"
+#include "ajar/scene/geometry.h"
+#include "environment.h"
+#include "solid.h"
+
+namespace ajar {
+namespace {
+
+Rgb radiance_at(const Scene& scene, const Light& light, const Surface& at) {
+  return light.textured ? eval(scene, light.radiance, at) : light.radiance.value;
+}
+
+LightPoint point_of(const Surface& at, uint32_t light) {
+  LightPoint p;
+  p.p = at.p, p.error = at.error, p.n = at.ng, p.uv = at.uv, p.light = light, p.prim = at.prim;
+  return p;
+}
+
+LightPoint point_at_infinity(const Vec3& travel, uint32_t light) {
+  LightPoint p;
+  p.n = travel, p.light = light, p.infinite = true;
+  return p;
+}
+
+LightPoint point_of_delta(const Light& light, uint32_t id) {
+  LightPoint p;
+  p.p = light.position, p.light = id, p.delta_position = true;
+  return p;
+}
+
+// Unit local direction of unit world direction w; stretch: solid angle there over solid angle here (1 for a rotation).
+Vec3 to_local(const Light& light, const Vec3& w, float& stretch) {
+  const Vec3 v = light.to_local * w;
+  const float l = std::sqrt(length2(v));
+  stretch = std::abs(glm::determinant(light.to_local)) / (l * l * l);
+  return v / l;
+}
+
+Rgb environment_at(const Scene& scene, const Light& light, const Vec3& w) {
+  if (light.kind == LightKind::constant) return light.radiance.value;
+  float stretch;
+  return environment_radiance(scene, scene.environments[light.environment], to_local(light, w, stretch));
+}
+
+float environment_pdf_at(const Scene& scene, const Light& light, const Vec3& w) {
+  if (light.kind == LightKind::constant) return sphere_pdf;
+  float stretch;
+  const Vec3 local = to_local(light, w, stretch);
+  return environment_pdf(scene.environments[light.environment], local) * stretch;
+}
+
+// Unit direction towards an infinite light; false where the light is black.
+bool sample_environment_at(const Scene& scene, const Light& light, const Vec2& u, Vec3& w, float& pdf) {
+  if (light.kind == LightKind::constant) {
+    w = to_sphere(u);
+    pdf = sphere_pdf;
+    return true;
+  }
+  const Vec3 local = sample_environment(scene.environments[light.environment], u, pdf);
+  if (!(pdf > 0)) return false;
+  const Vec3 v = Mat3(light.to_world) * local;
+  w = v / std::sqrt(length2(v));
+  float stretch;
+  to_local(light, w, stretch);
+  pdf *= stretch;
+  return true;
+}
+
+// Share of a spot's intensity in unit direction of travel w: linear in the angle between beam and cutoff.
+float spot_share(const Light& light, const Vec3& w) {
+  const float cosine = glm::dot(light.direction, w);
+  if (cosine >= light.cos_beam) return 1;
+  if (cosine <= light.cos_cutoff) return 0;
+  const float cutoff = std::acos(light.cos_cutoff), beam = std::acos(light.cos_beam);
+  return std::clamp((cutoff - std::acos(cosine)) / (cutoff - beam), 0.0f, 1.0f);
+}
+
+// A texture on a spot covers the square around its cone, seen along the axis.
+Rgb spot_color(const Scene& scene, const Light& light, const Vec3& w) {
+  if (!light.textured) return light.radiance.value;
+  const Vec3 local = light.to_local * w;
+  if (!(local.z > 0) || !(light.cos_cutoff > 0)) return Rgb(0);
+  const float tangent = safe_sqrt(1 - sqr(light.cos_cutoff)) / light.cos_cutoff;
+  Surface at;
+  at.uv = Vec2(local) / (local.z * tangent) * 0.5f + 0.5f;
+  return eval(scene, light.radiance, at);
+}
+
+Rgb delta_intensity(const Scene& scene, const Light& light, const Vec3& w) {
+  if (light.kind == LightKind::point) return light.radiance.value;
+  const float share = spot_share(light, w);
+  return share > 0 ? spot_color(scene, light, w) * share : Rgb(0);
+}
+
+float disk_pdf(const Scene& scene) { return 1 / (pi * scene.radius * scene.radius); }
+
+bool sample_direct_infinite(const Scene& scene, uint32_t id, const Vec2& u, DirectSample& out) {
+  const Light& light = scene.lights[id];
+  out.distance = infinity;
+  if (light.kind == LightKind::directional) {
+    out.wi = -light.direction;
+    out.pdf = 1;
+    out.radiance = light.radiance.value;
+    out.point = point_at_infinity(light.direction, id);
+    out.point.delta_direction = true;
+  } else {
+    if (!sample_environment_at(scene, light, u, out.wi, out.pdf)) return false;
+    out.radiance = environment_at(scene, light, out.wi);
+    out.point = point_at_infinity(-out.wi, id);
+  }
+  return !is_black(out.radiance);
+}
+
+bool sample_direct_delta(const Scene& scene, uint32_t id, const Vec3& x, DirectSample& out) {
+  const Light& light = scene.lights[id];
+  const Vec3 between = light.position - x;
+  const float d2 = length2(between);
+  if (!(d2 > 0)) return false;
+  out.distance = std::sqrt(d2);
+  out.wi = between / out.distance;
+  out.pdf = 1;
+  out.radiance = delta_intensity(scene, light, -out.wi) / d2;
+  out.point = point_of_delta(light, id);
+  return !is_black(out.radiance) && is_finite(out.radiance);
+}
+
+bool sample_emission_infinite(const Scene& scene, uint32_t id, const Vec2& u_position, const Vec2& u_direction,
+                              EmissionSample& out) {
+  const Light& light = scene.lights[id];
+  if (light.kind == LightKind::directional) {
+    out.direction = light.direction;
+    out.pdf_direction = 1;
+    out.radiance = light.radiance.value;
+  } else {
+    Vec3 w;
+    if (!sample_environment_at(scene, light, u_direction, w, out.pdf_direction)) return false;
+    out.direction = -w;
+    out.radiance = environment_at(scene, light, w);
+  }
+  out.point = point_at_infinity(out.direction, id);
+  out.point.delta_direction = light.kind == LightKind::directional;
+  const Frame frame = make_frame(out.direction);
+  const Vec2 disk = to_disk(u_position);
+  out.point.p = scene.center + scene.radius * (frame.s * disk.x + frame.t * disk.y - out.direction);
+  out.pdf_position = disk_pdf(scene);
+  return !is_black(out.radiance);
+}
+
+bool sample_emission_delta(const Scene& scene, uint32_t id, const Vec2& u_direction, EmissionSample& out) {
+  const Light& light = scene.lights[id];
+  out.point = point_of_delta(light, id);
+  out.pdf_position = 1;
+  if (light.kind == LightKind::point) {
+    out.direction = to_sphere(u_direction);
+    out.pdf_direction = sphere_pdf;
+  } else {
+    const float height = 1 - light.cos_cutoff;
+    if (!(height > 0)) return false;
+    out.direction = make_frame(light.direction).to_world(to_cone(u_direction, height));
+    out.pdf_direction = cone_pdf(height);
+  }
+  out.radiance = delta_intensity(scene, light, out.direction);
+  return !is_black(out.radiance);
+}
+
+bool is_infinite(LightKind kind) {
+  return kind == LightKind::constant || kind == LightKind::envmap || kind == LightKind::directional;
+}
+
+// Integral of a spot's share over directions.
+double spot_solid_angle(const Light& light) {
+  const double c = std::acos(double(light.cos_cutoff)), b = std::acos(std::max(light.cos_beam, light.cos_cutoff));
+  const double slope = c - b > 1e-4 ? (std::sin(c) - std::sin(b)) / (c - b) : std::cos((b + c) / 2);
+  return 2 * std::numbers::pi * (1 - slope);
+}
+
+double mean_luminance(const Scene& scene, const Slot& slot) { return std::max(luminance(mean(scene, slot)), 0.0f); }
+
+}  // namespace
+
+bool sample_direct(const Scene& scene, uint32_t id, const Vec3& x, const Vec2& u, DirectSample& out) {
+  const Light& light = scene.lights[id];
+  if (is_infinite(light.kind)) return sample_direct_infinite(scene, id, u, out);
+  if (light.kind != LightKind::area) return sample_direct_delta(scene, id, x, out);
+  Surface at;
+  if (!sample_shape(scene, light.shape, light.textured, x, u, at, out.wi, out.distance, out.pdf)) return false;
+  out.radiance = radiance_at(scene, light, at);
+  out.point = point_of(at, id);
+  return !is_black(out.radiance);
+}
+
+float pdf_direct(const Scene& scene, const LightPoint& point, const Vec3& x, const Vec3& wi) {
+  const Light& light = scene.lights[point.light];
+  if (point.delta_position || point.delta_direction) return 0;
+  if (point.infinite) return environment_pdf_at(scene, light, wi);
+  return shape_pdf(scene, light.shape, point, x, wi);
+}
+
+bool sample_emission(const Scene& scene, uint32_t id, const Vec2& u_position, const Vec2& u_direction,
+                     EmissionSample& out) {
+  const Light& light = scene.lights[id];
+  if (is_infinite(light.kind)) return sample_emission_infinite(scene, id, u_position, u_direction, out);
+  if (light.kind != LightKind::area) return sample_emission_delta(scene, id, u_direction, out);
+  const Surface at = sample_area(scene, light.shape, u_position, out.pdf_position);
+  const Vec3 local = to_cosine_hemisphere(u_direction);
+  out.pdf_direction = cosine_hemisphere_pdf(local);
+  if (!(out.pdf_position > 0) || !(out.pdf_direction > 0)) return false;
+  out.point = point_of(at, id);
+  out.direction = make_frame(at.ng).to_world(local);
+  out.radiance = radiance_at(scene, light, at);
+  return !is_black(out.radiance);
+}
+
+EmissionPdf pdf_emission(const Scene& scene, const LightPoint& point, const Vec3& direction) {
+  const Light& light = scene.lights[point.light];
+  switch (light.kind) {
+    case LightKind::area:
+      return {area_pdf(scene, light.shape, point.prim, point.uv),
+              std::max(glm::dot(point.n, direction), 0.0f) * inv_pi};
+    case LightKind::directional:
+      return {disk_pdf(scene), 1};
+    case LightKind::point:
+      return {1, sphere_pdf};
+    case LightKind::spot:
+      return {1, glm::dot(light.direction, direction) > light.cos_cutoff ? cone_pdf(1 - light.cos_cutoff) : 0};
+    default:
+      return {disk_pdf(scene), environment_pdf_at(scene, light, -direction)};
+  }
+}
+
+Rgb emitted(const Scene& scene, const Surface& at, const Vec3& wo) {
+  const uint32_t id = scene.shapes[at.shape].light;
+  if (id == none || at.instance != none || !(glm::dot(at.ng, wo) > 0)) return Rgb(0);
+  return radiance_at(scene, scene.lights[id], at);
+}
+
+LightPoint light_point(const Scene& scene, const Surface& at) {
+  return point_of(at, at.instance == none ? scene.shapes[at.shape].light : none);
+}
+
+Rgb environment(const Scene& scene, uint32_t id, const Vec3& w) {
+  const Light& light = scene.lights[id];
+  return light.kind == LightKind::constant || light.kind == LightKind::envmap ? environment_at(scene, light, w)
+                                                                              : Rgb(0);
+}
+
+LightPoint light_point(const Scene& scene, uint32_t id, const Vec3& w) {
+  LightPoint p = point_at_infinity(-w, id);
+  p.delta_direction = scene.lights[id].kind == LightKind::directional;
+  return p;
+}
+
+float power(const Scene& scene, uint32_t id) {
+  const Light& light = scene.lights[id];
+  const double disk = std::numbers::pi * scene.radius * scene.radius, sphere = 4 * std::numbers::pi;
+  double watts = 0;
+  switch (light.kind) {
+    case LightKind::area:
+      watts = std::numbers::pi * area(scene, light.shape) * mean_luminance(scene, light.radiance);
+      break;
+    case LightKind::constant:
+      watts = sphere * disk * luminance(light.radiance.value);
+      break;
+    case LightKind::envmap:
+      watts = disk * luminance(environment_total(scene, scene.environments[light.environment]));
+      break;
+    case LightKind::directional:
+      watts = disk * luminance(light.radiance.value);
+      break;
+    case LightKind::point:
+      watts = sphere * luminance(light.radiance.value);
+      break;
+    case LightKind::spot:
+      watts = spot_solid_angle(light) * mean_luminance(scene, light.radiance);
+      break;
+  }
+  return float(std::clamp(watts, 0.0, double(std::numeric_limits<float>::max())));
+}
+
+}  // namespace ajar

@@ -1,0 +1,308 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "loader.h"
+
+namespace ajar {
+namespace {
+
+constexpr double air = 1.000277, bk7 = 1.5046, polypropylene = 1.49;
+
+// A colour that a texture without a name may stand for too.
+Slot main_slot(Params& p, std::initializer_list<const char*> names, const Slot& otherwise, Colour kind) {
+  if (std::none_of(names.begin(), names.end(), [&](const char* name) { return has(p, name); }))
+    for (size_t i = 0; i < p.node.children.size(); ++i)
+      if (p.node.children[i].name.empty() && is_texture(follow(p.loader, p.node.children[i]))) {
+        p.used[i] = true;
+        return slot_of(p.loader, p.node.children[i], kind);
+      }
+  return slot(p, names, otherwise, kind);
+}
+
+// A number, or the name of a substance.
+double index_of(Params& p, const char* name, double otherwise) {
+  const Node* node = find(p, {name});
+  if (node == nullptr) return otherwise;
+  const std::string* value = attribute(*node, "value");
+  std::optional<double> ior = value == nullptr ? std::nullopt : to_number(*value);
+  if (!ior && node->tag == "string" && value != nullptr) ior = find_dielectric(*value);
+  if (!ior && node->tag == "string")
+    fail(p.loader, *node, fmt::format("unknown substance; known are {}, or a number", dielectric_names()));
+  if (!ior || !(*ior >= 1e-3 && *ior <= 1e3)) fail(p.loader, *node, "should be an index of refraction: 1.5, \"bk7\"");
+  return *ior;
+}
+
+float relative_index(Params& p, double inside) {
+  return float(index_of(p, "int_ior", inside) / index_of(p, "ext_ior", air));
+}
+
+void distribution(Params& p, Material& m) {
+  const std::string word = choice(p, "distribution", "beckmann", {"beckmann", "ggx", "phong", "as"});
+  m.distribution = word == "ggx" ? Microfacet::ggx : Microfacet::beckmann;
+  if (word == "phong" || word == "as")
+    note(p.loader, p.node, fmt::format("the {} distribution is rendered as beckmann of the same roughness", word));
+}
+
+Slot roughness(Params& p, const char* name, const Slot& otherwise) {
+  const Slot s = slot(p, {name}, otherwise, Colour::ratio);
+  if (s.texture == none && !(luminance(s.value) > 0))
+    fail(p.loader, p.node, fmt::format("{} should be greater than 0; {} is the plugin without roughness", name,
+                                       p.node.type.starts_with("rough") ? p.node.type.substr(5) : p.node.type));
+  return s;
+}
+
+void microfacets(Params& p, Material& m) {
+  distribution(p, m);
+  m.alpha_u = m.alpha_v = roughness(p, "alpha", 0.1f);
+  m.alpha_u = roughness(p, "alpha_u", m.alpha_u);
+  m.alpha_v = roughness(p, "alpha_v", m.alpha_v);
+}
+
+void diffuse(Params& p, Material& m) {
+  m.reflectance = main_slot(p, {"reflectance", "diffuse_reflectance"}, 0.5f, Colour::reflectance);
+}
+
+void roughdiffuse(Params& p, Material& m) {
+  note(p.loader, p.node, "is rendered as diffuse: its roughness has no effect");
+  diffuse(p, m);
+}
+
+void conductor(Params& p, Material& m) {
+  m.specular = main_slot(p, {"specular_reflectance"}, 1.0f, Colour::reflectance);
+  const bool given = has(p, "eta") || has(p, "k");
+  const std::string name = text(p, "material", given || !p.loader.document.old ? "none" : "Cu");
+  const Metal* metal = find_metal(name);
+  if (metal == nullptr)
+    fail(p.loader, p.node, fmt::format("unknown material \"{}\"; known are {}", name.substr(0, 80), metal_names()));
+  const float outside = float(index_of(p, "ext_eta", p.loader.document.old ? air : 1));
+  m.eta = colour(p, "eta", metal->eta, Colour::ratio) / outside;
+  m.k = colour(p, "k", metal->k, Colour::ratio) / outside;
+}
+
+void roughconductor(Params& p, Material& m) {
+  conductor(p, m);
+  microfacets(p, m);
+}
+
+void dielectric(Params& p, Material& m) {
+  m.ior = relative_index(p, bk7);
+  m.specular = slot(p, {"specular_reflectance"}, 1.0f, Colour::reflectance);
+  m.transmittance = slot(p, {"specular_transmittance"}, 1.0f, Colour::reflectance);
+}
+
+void roughdielectric(Params& p, Material& m) {
+  dielectric(p, m);
+  microfacets(p, m);
+}
+
+void plastic(Params& p, Material& m) {
+  m.ior = relative_index(p, polypropylene);
+  m.reflectance = main_slot(p, {"diffuse_reflectance", "reflectance"}, 0.5f, Colour::reflectance);
+  m.specular = slot(p, {"specular_reflectance"}, 1.0f, Colour::reflectance);
+  m.nonlinear = boolean(p, "nonlinear", false);
+}
+
+void roughplastic(Params& p, Material& m) {
+  plastic(p, m);
+  distribution(p, m);
+  m.alpha_u = m.alpha_v = roughness(p, "alpha", 0.1f);
+}
+
+void phong(Params& p, Material& m) {
+  m.reflectance = main_slot(p, {"diffuse_reflectance", "reflectance"}, 0.5f, Colour::reflectance);
+  m.specular = slot(p, {"specular_reflectance"}, 0.2f, Colour::reflectance);
+  m.exponent = slot(p, {"exponent"}, 30.0f, Colour::ratio);
+  if (m.reflectance.texture != none || m.specular.texture != none) return;
+  const float sum = max_component(m.reflectance.value + m.specular.value);
+  if (sum <= 1) return;
+  note(p.loader, p.node, "diffuse and specular reflectance add up to more than 1: both were scaled down");
+  m.reflectance.value /= sum;
+  m.specular.value /= sum;
+}
+
+void principled(Params& p, Material& m) {
+  m.reflectance = main_slot(p, {"base_color"}, 0.5f, Colour::reflectance);
+  const std::pair<const char*, Slot*> slots[] = {
+      {"roughness", &m.roughness}, {"anisotropic", &m.anisotropic}, {"metallic", &m.metallic},
+      {"spec_trans", &m.spec_trans}, {"spec_tint", &m.spec_tint}, {"sheen", &m.sheen},
+      {"sheen_tint", &m.sheen_tint}, {"clearcoat", &m.clearcoat}, {"clearcoat_gloss", &m.clearcoat_gloss},
+      {"flatness", &m.flatness}};
+  for (const auto& [name, target] : slots) *target = slot(p, {name}, *target, Colour::ratio);
+  m.ior = float(number(p, "eta", 1.5));
+  if (has(p, "specular")) {  // Burley 2012: reflectance at normal incidence is 0.08 times this
+    const double specular = number(p, "specular", 0.5);
+    if (!(specular >= 0 && specular <= 1)) fail(p.loader, p.node, "specular should be from 0 to 1");
+    m.ior = float(2 / (1 - std::sqrt(0.08 * specular)) - 1);
+  }
+  if (!(m.ior >= 1 && m.ior <= 1000)) fail(p.loader, p.node, "eta should be 1 or more");
+}
+
+void null(Params&, Material&) {}
+
+// The nested bsdfs: as many as asked for, in the order of the file, or of their names where all have one.
+void take_nested(Params& p, Material& m, size_t low, size_t high) {
+  std::vector<std::pair<std::string, const Node*>> list;
+  bool named = true;
+  for (size_t i = 0; i < p.node.children.size(); ++i) {
+    const Node& meant = follow(p.loader, p.node.children[i]);
+    if (meant.tag != "bsdf") continue;
+    p.used[i] = true;
+    named &= !p.node.children[i].name.empty();
+    list.emplace_back(p.node.children[i].name, &meant);
+  }
+  if (list.size() < low || list.size() > high)
+    fail(p.loader, p.node, fmt::format("needs {} nested bsdf{}, has {}",
+                                       low == high ? fmt::format("{}", low) : fmt::format("{} to {}", low, high),
+                                       high == 1 ? "" : "s", list.size()));
+  if (named) std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (size_t i = 0; i < list.size(); ++i) m.nested[i] = load_bsdf(p.loader, *list[i].second);
+}
+
+bool transmits(const Scene& scene, uint32_t id) {
+  const Material& m = scene.materials[id];
+  switch (m.kind) {
+    case MaterialKind::dielectric:
+    case MaterialKind::roughdielectric:
+    case MaterialKind::thindielectric:
+    case MaterialKind::null:
+    case MaterialKind::mask:
+      return true;
+    case MaterialKind::principled:
+      return m.spec_trans.texture != none || luminance(m.spec_trans.value) > 0;
+    default:
+      return std::any_of(m.nested.begin(), m.nested.end(),
+                         [&](uint32_t nested) { return nested != none && transmits(scene, nested); });
+  }
+}
+
+void twosided(Params& p, Material& m) {
+  take_nested(p, m, 1, 2);
+  for (const uint32_t side : m.nested)
+    if (side != none && transmits(p.loader.scene, side))
+      fail(p.loader, p.node, "what is nested lets light through; only opaque bsdfs have two sides: take twosided away");
+}
+
+void mask(Params& p, Material& m) {
+  m.weight = main_slot(p, {"opacity"}, 0.5f, Colour::reflectance);
+  take_nested(p, m, 1, 1);
+}
+
+void blend(Params& p, Material& m) {
+  m.weight = main_slot(p, {"weight"}, 0.5f, Colour::reflectance);
+  take_nested(p, m, 2, 2);
+}
+
+void mixture(Params& p, Material& m) {
+  take_nested(p, m, 1, m.nested.size());
+  const auto weights = to_numbers(text(p, "weights", ""));
+  const bool conserve = boolean(p, "ensure_energy_conservation", true);
+  const size_t count = size_t(std::count_if(m.nested.begin(), m.nested.end(), [](uint32_t n) { return n != none; }));
+  if (!weights || weights->size() != count)
+    fail(p.loader, p.node, fmt::format("needs <string name=\"weights\" value=\"...\"/> with {} numbers", count));
+  double sum = 0;
+  for (const double w : *weights) {
+    if (!(w >= 0 && w <= 1e6)) fail(p.loader, p.node, "a weight should not be negative");
+    sum += w;
+  }
+  if (sum > 1 + 1e-6 && !conserve) fail(p.loader, p.node, "its weights add up to more than 1");
+  if (sum > 1 + 1e-6) note(p.loader, p.node, "its weights add up to more than 1: they were scaled down");
+  for (size_t i = 0; i < count; ++i) m.weights[i] = float((*weights)[i] / std::max(sum, 1.0));
+}
+
+void bumpmap(Params& p, Material& m) {
+  m.map_scale = float(number(p, "scale", 1));
+  const Node* map = nullptr;
+  for (size_t i = 0; i < p.node.children.size(); ++i) {
+    const Node& child = p.node.children[i];
+    if (child.name == "scale" || !is_texture(follow(p.loader, child))) continue;
+    if (map != nullptr) fail(p.loader, child, "a bumpmap takes one texture");
+    map = &child;
+    p.used[i] = true;
+  }
+  if (map == nullptr) fail(p.loader, p.node, "needs a nested <texture> of heights");
+  m.map = slot_of(p.loader, *map, Colour::ratio);
+  take_nested(p, m, 1, 1);
+}
+
+void normalmap(Params& p, Material& m) {
+  if (has(p, "filename")) {  // without a texture around it
+    Texture t;
+    t.flip_v = false;
+    t.image = load_image_file(p.loader, p.node, file(p, "filename"), true, 0);
+    const float tiles = float(positive(p, "tiles", 1));
+    t.to_uv[0][0] = t.to_uv[1][1] = tiles;
+    if (boolean(p, "use_slopes", false)) fail(p.loader, p.node, "a map of slopes is not supported, one of normals is");
+    m.map.texture = uint32_t(p.loader.scene.textures.size());
+    p.loader.scene.textures.push_back(t);
+  } else {
+    m.map = main_slot(p, {"normalmap", "map"}, Slot(), Colour::ratio);
+    if (m.map.texture == none) fail(p.loader, p.node, "needs <texture name=\"normalmap\" ...>");
+  }
+  take_nested(p, m, 1, 1);
+}
+
+struct Entry {
+  const char* type;
+  MaterialKind kind;
+  void (*read)(Params&, Material&);
+};
+constexpr Entry entries[] = {{"diffuse", MaterialKind::diffuse, diffuse},
+                             {"twosided", MaterialKind::twosided, twosided},
+                             {"roughplastic", MaterialKind::roughplastic, roughplastic},
+                             {"plastic", MaterialKind::plastic, plastic},
+                             {"roughconductor", MaterialKind::roughconductor, roughconductor},
+                             {"conductor", MaterialKind::conductor, conductor},
+                             {"dielectric", MaterialKind::dielectric, dielectric},
+                             {"roughdielectric", MaterialKind::roughdielectric, roughdielectric},
+                             {"thindielectric", MaterialKind::thindielectric, dielectric},
+                             {"mask", MaterialKind::mask, mask},
+                             {"bumpmap", MaterialKind::bumpmap, bumpmap},
+                             {"normalmap", MaterialKind::normalmap, normalmap},
+                             {"blendbsdf", MaterialKind::blend, blend},
+                             {"mixturebsdf", MaterialKind::mixture, mixture},
+                             {"principled", MaterialKind::principled, principled},
+                             {"phong", MaterialKind::phong, phong},
+                             {"null", MaterialKind::null, null},
+                             {"roughdiffuse", MaterialKind::diffuse, roughdiffuse}};
+
+// With --lenient: what is nested in the unknown bsdf, or grey.
+uint32_t stand_in(Loader& loader, const Node& node) {
+  std::string known;
+  for (const Entry& e : entries) known += (known.empty() ? "" : ", ") + std::string(e.type);
+  Params p(loader, node);
+  const std::vector<const Node*> inner = nested(p, "bsdf");
+  unsupported(loader, node, "unknown bsdf; supported: " + known,
+              inner.empty() ? "grey diffuse in its place" : "what is nested in it in its place");
+  if (!inner.empty()) return load_bsdf(loader, *inner.front());
+  loader.scene.materials.emplace_back();
+  return uint32_t(loader.scene.materials.size() - 1);
+}
+
+}  // namespace
+
+uint32_t load_bsdf(Loader& loader, const Node& node) {
+  const auto found = loader.bsdfs.find(&node);
+  if (found != loader.bsdfs.end()) return found->second;
+  const Open open(loader, node);
+  const auto entry = std::find_if(std::begin(entries), std::end(entries), [&](const Entry& e) { return node.type == e.type; });
+  uint32_t index;
+  if (entry == std::end(entries)) {
+    index = stand_in(loader, node);
+  } else {
+    Material m;
+    m.kind = entry->kind;
+    Params p(loader, node);
+    entry->read(p, m);
+    finish(p, {"specular_sampling_weight", "specular_sampling", "specular_sampling_rate", "clearcoat_sampling_rate",
+               "diffuse_reflectance_sampling_rate", "spec_trans_sampling_rate", "sample_visible", "id"});
+    index = uint32_t(loader.scene.materials.size());
+    loader.scene.materials.push_back(std::move(m));
+    if (const std::string problem = material_problem(loader.scene, index); !problem.empty())
+      fail(loader, node, problem);
+  }
+  loader.bsdfs.emplace(&node, index);
+  return index;
+}
+
+}  // namespace ajar

@@ -1,0 +1,135 @@
+#include <fmt/format.h>
+
+#include "loader.h"
+
+namespace ajar {
+namespace {
+
+constexpr const char* supported = "supported: area, envmap, constant, point, spot, directional";
+
+DVec3 checked_direction(const Loader& loader, const Node& node, const DVec3& d) {
+  const double length = glm::length(d);
+  if (!(length > 1e-30)) fail(loader, node, "its direction is the zero vector");
+  return d / length;
+}
+
+Light make_light(Params& p, LightKind kind) {
+  Light light;
+  light.kind = kind;
+  const double weight = number(p, "sampling_weight", 1);
+  if (weight < 0) fail(p.loader, p.node, "sampling_weight should not be negative");
+  light.sampling_weight = float(weight);
+  return light;
+}
+
+void add(Loader& loader, Light&& light) { loader.scene.lights.push_back(std::move(light)); }
+
+// Rotation (and mirror) of a transform, without its scale and position; lights at infinity have neither.
+Mat4 orientation(const DMat4& m) {
+  DMat4 r(1);
+  for (int i = 0; i < 3; ++i) r[i] = DMat4::col_type(glm::normalize(DVec3(m[i])), 0);
+  return Mat4(r);
+}
+
+DMat4 regular_to_world(Params& p) {
+  const DMat4 m = to_world(p);
+  const DVec3 x(m[0]), y(m[1]), z(m[2]);
+  const double size = glm::length(x) * glm::length(y) * glm::length(z);
+  if (!(size > 0) || !(std::abs(glm::dot(x, glm::cross(y, z))) > 1e-9 * size))
+    fail(p.loader, p.node, "its to_world is singular");
+  return m;
+}
+
+void area(Params& p, uint32_t shape) {
+  Light light = make_light(p, LightKind::area);
+  light.radiance = slot(p, {"radiance"}, 1.0f, Colour::emission);
+  light.shape = shape;
+  p.loader.scene.shapes[shape].light = uint32_t(p.loader.scene.lights.size());
+  add(p.loader, std::move(light));
+}
+
+void constant(Params& p) {
+  Light light = make_light(p, LightKind::constant);
+  light.radiance = Slot(colour(p, "radiance", Rgb(1), Colour::emission));
+  add(p.loader, std::move(light));
+}
+
+void envmap(Params& p) {
+  Light light = make_light(p, LightKind::envmap);
+  const std::string path = file(p, "filename");
+  const double scale = number(p, "scale", 1);
+  if (scale < 0) fail(p.loader, p.node, "scale should not be negative");
+  const uint32_t image =
+      load_image_file(p.loader, p.node, path, boolean(p, "raw", false), number(p, "gamma", 0));
+  light.to_world = orientation(regular_to_world(p));
+  light.environment = uint32_t(p.loader.scene.environments.size());
+  p.loader.scene.environments.push_back(make_environment(p.loader.scene, image, float(scale)));
+  add(p.loader, std::move(light));
+}
+
+void point(Params& p) {
+  Light light = make_light(p, LightKind::point);
+  light.radiance = Slot(colour(p, "intensity", Rgb(1), Colour::emission));
+  const Node* position = find(p, {"position"});
+  const DVec3 at = position == nullptr ? DVec3(0) : vector_of(p.loader, *position, 0);
+  light.position = Vec3(to_world(p) * glm::dvec4(at, 1));
+  add(p.loader, std::move(light));
+}
+
+void spot(Params& p) {
+  Light light = make_light(p, LightKind::spot);
+  light.radiance = Slot(colour(p, "intensity", Rgb(1), Colour::emission));
+  const double cutoff = number(p, "cutoff_angle", 20), beam = number(p, "beam_width", cutoff * 3 / 4);
+  if (!(cutoff > 0 && cutoff < 180)) fail(p.loader, p.node, "cutoff_angle should be between 0 and 180 degrees");
+  if (!(beam >= 0 && beam <= cutoff)) fail(p.loader, p.node, "beam_width should be from 0 to cutoff_angle");
+  light.cos_cutoff = float(std::cos(glm::radians(cutoff)));
+  light.cos_beam = float(std::cos(glm::radians(beam)));
+  if (find(p, {"texture"}) != nullptr)
+    unsupported(p.loader, p.node, "a texture on a spot light is not supported", "left out");
+  const DMat4 m = regular_to_world(p);
+  light.to_world = orientation(m);
+  light.to_world[3] = Vec4(Vec3(DVec3(m[3])), 1);
+  light.position = Vec3(DVec3(m[3]));
+  light.direction = Vec3(checked_direction(p.loader, p.node, DVec3(m[2])));
+  add(p.loader, std::move(light));
+}
+
+void directional(Params& p) {
+  Light light = make_light(p, LightKind::directional);
+  light.radiance = Slot(colour(p, "irradiance", Rgb(1), Colour::emission));
+  const Node* direction = find(p, {"direction"});
+  const DVec3 d = direction == nullptr ? DVec3(0, 0, 1) : vector_of(p.loader, *direction, 0);
+  light.direction = Vec3(checked_direction(p.loader, p.node, DVec3(to_world(p) * glm::dvec4(d, 0))));
+  add(p.loader, std::move(light));
+}
+
+struct Entry {
+  const char* type;
+  void (*read)(Params&);
+};
+constexpr Entry entries[] = {{"constant", constant}, {"envmap", envmap},           {"point", point},
+                             {"spot", spot},         {"directional", directional}};
+
+}  // namespace
+
+void load_emitter(Loader& loader, const Node& node, uint32_t shape) {
+  Params p(loader, node);
+  if ((node.type == "area") != (shape != none)) {
+    if (node.type == "area") fail(loader, node, "an area light belongs inside the <shape> that emits");
+    unsupported(loader, node, "only an area light can be inside a shape", "left out");
+    return;
+  }
+  if (node.type == "area") {
+    area(p, shape);
+  } else {
+    const auto entry = std::find_if(std::begin(entries), std::end(entries), [&](const Entry& e) { return node.type == e.type; });
+    if (entry == std::end(entries)) {
+      unsupported(loader, node, fmt::format("unknown emitter; {}", supported), "left out");
+      return;
+    }
+    entry->read(p);
+  }
+  finish(p, {"id", "cache", "mis_compensation"});
+}
+
+}  // namespace ajar

@@ -1,0 +1,101 @@
+#include "ajar/scene/load.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "ajar/core/error.h"
+#include "loader.h"
+
+namespace ajar {
+namespace {
+
+void collect_ids(Loader& loader, const Node& node) {
+  for (const Node& child : node.children) {
+    if (!child.id.empty() && child.tag != "ref") {
+      const auto [known, added] = loader.ids.emplace(child.id, &child);
+      if (!added)
+        fail(loader, child, fmt::format("the id is taken already at {}:{}",
+                                        loader.document.files[known->second->file], known->second->line));
+    }
+    collect_ids(loader, child);
+  }
+}
+
+// How many shapes name each mesh file: only what is named twice is worth keeping.
+void count_meshes(Loader& loader, const Node& node) {
+  for (const Node& child : node.children) {
+    if (child.tag != "shape") continue;
+    const std::string* name = nullptr;
+    std::string index = child.type == "serialized" ? "#0" : "";
+    for (const Node& parameter : child.children) {
+      if (parameter.name == "filename") name = attribute(parameter, "value");
+      const std::string* value = attribute(parameter, "value");
+      if (parameter.name == "shape_index" && value != nullptr) index = "#" + *value;
+    }
+    if (name != nullptr) ++loader.mesh_uses[find_file(loader.document, child, *name) + index];
+    count_meshes(loader, child);
+  }
+}
+
+void load_child(Loader& loader, const Node& node, bool& has_sensor, bool& has_integrator) {
+  if (node.tag == "bsdf") {
+    load_bsdf(loader, node);
+  } else if (node.tag == "shape") {
+    load_shape(loader, node, none);
+  } else if (node.tag == "emitter") {
+    if (node.type != "area" || node.id.empty()) load_emitter(loader, node, none);
+  } else if (node.tag == "sensor") {
+    if (has_sensor) return note(loader, node, "the scene has several sensors: the first one is used");
+    has_sensor = true;
+    load_sensor(loader, node);
+  } else if (node.tag == "integrator") {
+    if (has_integrator) return note(loader, node, "the scene has several integrators: the first one is used");
+    has_integrator = true;
+    load_integrator(loader, node);
+  } else if (node.tag == "medium") {
+    note(loader, node, "participating media are not supported; shapes that name it are errors");
+  } else if (node.tag == "texture" || (node.tag == "spectrum" && !node.id.empty()) || node.tag == "sampler" ||
+             node.tag == "film" || node.tag == "ref") {
+    // definitions: read where they are named
+  } else if (node.name.empty() || !node.children.empty()) {
+    unsupported(loader, node,
+                "unknown element; supported: integrator, sensor, bsdf, texture, shape, emitter, default, include, path",
+                "left out");
+  }
+}
+
+Scene load(const std::string& text, const std::string& folder, const std::string& name, const LoadOptions& options) {
+  const Document document = read_document(text, folder, name, options.defines);
+  Loader loader{document, options.lenient};
+  collect_ids(loader, document.root);
+  count_meshes(loader, document.root);
+  bool has_sensor = false, has_integrator = false;
+  for (const Node& child : document.root.children) load_child(loader, child, has_sensor, has_integrator);
+  if (!has_sensor)
+    throw Error(fmt::format("{}: the scene has no camera: add <sensor type=\"perspective\"> with a to_world", name));
+  if (loader.scene.shapes.empty() && loader.scene.instances.empty())
+    loader.scene.notes.push_back(name + ": the scene has no shapes");
+  if (loader.scene.lights.empty())
+    loader.scene.notes.push_back(name + ": the scene has no light: the image will be black");
+  try {
+    finish(loader.scene);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", name, error.what()));
+  }
+  return std::move(loader.scene);
+}
+
+}  // namespace
+
+Scene load_scene(const std::string& path, const LoadOptions& options) {
+  return load(read_text(path), std::filesystem::path(path).parent_path().string(), path, options);
+}
+
+Scene load_scene_text(const std::string& text, const std::string& folder, const std::string& name,
+                      const LoadOptions& options) {
+  return load(text, folder, name, options);
+}
+
+}  // namespace ajar

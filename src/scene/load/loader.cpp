@@ -1,0 +1,51 @@
+#include "loader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ajar/core/error.h"
+
+namespace ajar {
+
+namespace {
+constexpr size_t max_open = 48;  // a plugin in a plugin in a plugin ...
+}
+
+void fail(const Loader& loader, const Node& node, const std::string& text) {
+  throw Error(place(loader.document, node) + ": " + text);
+}
+
+void note(Loader& loader, const Node& node, const std::string& text) {
+  const std::string what = fmt::format("<{} type=\"{}\"> {}", node.tag, node.type, text);
+  if (loader.said.insert(what).second) loader.scene.notes.push_back(place(loader.document, node) + ": " + text);
+}
+
+void unsupported(Loader& loader, const Node& node, const std::string& text, const std::string& instead) {
+  if (!loader.lenient) fail(loader, node, text + "; --lenient goes on without it");
+  note(loader, node, text + ": " + instead);
+}
+
+const Node& follow(const Loader& loader, const Node& node) {
+  if (node.tag != "ref") return node;
+  if (node.id.empty()) fail(loader, node, "needs id=\"...\"");
+  std::string id = node.id;
+  for (size_t steps = 0;; ++steps) {
+    const auto alias = loader.document.aliases.find(id);
+    if (alias == loader.document.aliases.end()) break;
+    if (steps > loader.document.aliases.size()) fail(loader, node, "its <alias> goes in a circle");
+    id = alias->second;
+  }
+  const auto found = loader.ids.find(id);
+  if (found == loader.ids.end()) fail(loader, node, fmt::format("nothing in the scene has the id \"{}\"", id));
+  return *found->second;
+}
+
+Open::Open(Loader& l, const Node& node) : loader(l) {
+  if (std::find(loader.open.begin(), loader.open.end(), &node) != loader.open.end())
+    fail(loader, node, "contains itself");
+  if (loader.open.size() >= max_open) fail(loader, node, fmt::format("plugins are nested more than {} deep", max_open));
+  loader.open.push_back(&node);
+}
+
+}  // namespace ajar

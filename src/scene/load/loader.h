@@ -1,0 +1,149 @@
+// Enters: a Document.
+// Leaves: what the readers of single elements share: the growing Scene, names, messages, typed access to parameters.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "ajar/scene/load.h"
+#include "mesh.h"
+#include "node.h"
+
+namespace ajar {
+
+using DMat4 = glm::dmat4;
+using DVec3 = glm::dvec3;
+
+/// How numbers become RGB. reflectance: spectra under D65, so that a flat one is grey; at most 1. ratio: the same without
+/// a limit (indices of refraction, roughness). emission: spectra as light, unbounded.
+enum class Colour { reflectance, ratio, emission };
+
+struct Loader {
+  const Document& document;
+  bool lenient = false;
+  Scene scene;
+  std::unordered_map<std::string, const Node*> ids;
+  std::unordered_map<const Node*, uint32_t> bsdfs, groups;            ///< read already
+  std::map<std::pair<const Node*, Colour>, uint32_t> textures;        ///< the same, by what they stand for
+  std::vector<const Node*> open;                                      ///< being read: a ref to one of them is a cycle
+  std::map<std::string, uint32_t> images;                             ///< by path and decoding
+  std::map<std::string, int> mesh_uses;                               ///< shapes that name a file
+  std::map<std::string, Mesh> meshes;                                 ///< parsed files that more than one shape names
+  std::set<std::string> said;                                         ///< notes, each once
+  uint32_t grey = none, black = none;                                 ///< materials of shapes without a bsdf
+};
+
+/// Throws Error "file:line: <element>: text".
+[[noreturn]] void fail(const Loader& loader, const Node& node, const std::string& text);
+/// Adds a note about the element; the same text is said once, with the first place.
+void note(Loader& loader, const Node& node, const std::string& text);
+/// For what Ajar lacks: an Error, or with --lenient a note that ends in what is done instead.
+void unsupported(Loader& loader, const Node& node, const std::string& text, const std::string& instead);
+
+/// The element itself, or what a <ref> means.
+const Node& follow(const Loader& loader, const Node& node);
+
+/// Marks an element as being read for the life of the mark; a second mark on it is an Error (it contains itself).
+struct Open {
+  Open(Loader& l, const Node& node);
+  ~Open() { loader.open.pop_back(); }
+  Open(const Open&) = delete;
+  Open& operator=(const Open&) = delete;
+  Loader& loader;
+};
+
+// numbers
+
+/// All of the text as one finite number; nothing if it is not.
+std::optional<double> to_number(std::string_view text);
+/// Numbers divided by commas or blanks; nothing if one is malformed.
+std::optional<std::vector<double>> to_numbers(std::string_view text);
+/// The attribute as a number, within the range of float.
+double number_attribute(const Loader& loader, const Node& node, const char* name, double otherwise);
+/// x, y, z attributes or value="x, y, z" (or one number for all three).
+DVec3 vector_of(const Loader& loader, const Node& node, double otherwise);
+
+// parameters of a plugin
+
+/// The children of an element and which of them were asked for.
+struct Params {
+  Loader& loader;
+  const Node& node;
+  std::vector<bool> used;
+
+  Params(Loader& l, const Node& n) : loader(l), node(n), used(n.children.size(), false) {}
+};
+
+/// The child of one of these names (the last one, as Mitsuba 0.6 has it), or nullptr.
+const Node* find(Params& params, std::initializer_list<const char*> names);
+bool has(Params& params, const char* name);
+double number(Params& params, const char* name, double otherwise);
+double positive(Params& params, const char* name, double otherwise);
+int integer(Params& params, const char* name, int otherwise, int low, int high);
+bool boolean(Params& params, const char* name, bool otherwise);
+std::string text(Params& params, const char* name, const std::string& otherwise);
+/// One of a few words, in any case; an Error lists them.
+std::string choice(Params& params, const char* name, const std::string& otherwise,
+                   std::initializer_list<const char*> words);
+/// The file that the string parameter `name` means; an Error where it is missing.
+std::string file(Params& params, const char* name);
+/// Every child of this tag, refs followed, in the order of the file; asks for unnamed and named ones alike.
+std::vector<const Node*> nested(Params& params, std::string_view tag);
+/// Says which children nobody asked for, except those of the list: names that are known to change nothing.
+void finish(Params& params, std::initializer_list<const char*> harmless = {});
+
+// transforms, spectra, textures: in files of the same names
+
+/// Product of the steps of a <transform>, each applied after those before it.
+DMat4 transform_of(const Loader& loader, const Node& node);
+/// The transform parameter, identity if there is none; an Error where it is singular or projective.
+DMat4 to_world(Params& params, const char* name = "to_world");
+/// Axes equal in length and at right angles, to a relative 1e-4.
+bool is_similarity(const DMat4& m);
+
+/// <rgb>, <srgb>, <spectrum>, <blackbody>, <float>: linear RGB, not negative.
+Rgb colour_of(Loader& loader, const Node& node, Colour kind);
+bool is_texture(const Node& node);
+/// A parameter that may be a number, a colour or a texture.
+Slot slot(Params& params, std::initializer_list<const char*> names, const Slot& otherwise, Colour kind);
+/// The same of an element at hand.
+Slot slot_of(Loader& loader, const Node& node, Colour kind);
+/// A parameter that has to be one colour.
+Rgb colour(Params& params, const char* name, const Rgb& otherwise, Colour kind);
+/// Index into Scene::textures; kind says what the numbers in it stand for.
+uint32_t load_texture(Loader& loader, const Node& node, Colour kind);
+/// Index into Scene::images; the same file decoded in the same way is read once. channel: empty, or r, g, b, a.
+uint32_t load_image_file(Loader& loader, const Node& node, const std::string& path, bool raw, double gamma,
+                         const std::string& channel = {});
+
+/// RGB of wavelength [nm] and value pairs: linear between them, zero outside.
+Rgb rgb_of_list(std::vector<std::pair<double, double>> list, Colour kind);
+/// Radiance of a black body [W/(m^2 sr nm)] at a temperature in kelvin, as RGB.
+Rgb rgb_of_blackbody(double kelvin);
+
+struct Metal {
+  const char* name;
+  Rgb eta, k;
+};
+const Metal* find_metal(const std::string& name);
+std::string metal_names();
+/// Index of refraction of a named dielectric.
+std::optional<double> find_dielectric(const std::string& name);
+std::string dielectric_names();
+
+// whole elements
+
+uint32_t load_bsdf(Loader& loader, const Node& node);
+void load_shape(Loader& loader, const Node& node, uint32_t group);
+uint32_t load_shape_group(Loader& loader, const Node& node);
+/// shape: the one that emits, for area lights; none for lights of the scene.
+void load_emitter(Loader& loader, const Node& node, uint32_t shape);
+void load_sensor(Loader& loader, const Node& node);
+void load_integrator(Loader& loader, const Node& node);
+
+}  // namespace ajar

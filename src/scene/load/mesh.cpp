@@ -1,0 +1,142 @@
+#include "mesh.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "ajar/core/error.h"
+#include "smooth.h"
+
+namespace ajar {
+namespace {
+
+using glm::dvec3;
+
+bool finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+bool try_normalize(Vec3& n) {
+  const dvec3 d(n);
+  const double length = glm::length(d);  // double: no float's square leaves its range
+  if (!(length > 0) || !std::isfinite(length)) return false;
+  n = Vec3(d / length);
+  return true;
+}
+
+// det * inverse transpose, which exists for singular matrices too.
+glm::dmat3 cofactor(const glm::dmat3& m) {
+  return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
+}
+
+// Moves positions and normals; returns whether the map is a mirror. Bad positions are the caller's business.
+bool move(Mesh& mesh, const Mat4& to_world) {
+  const glm::dmat4 m(to_world);
+  const glm::dmat3 linear(m);
+  for (Vec3& p : mesh.positions) p = Vec3(linear * dvec3(p) + dvec3(m[3]));
+  const bool mirror = glm::determinant(linear) < 0;
+  const glm::dmat3 normal = cofactor(linear) * (mirror ? -1.0 : 1.0);
+  for (Vec3& n : mesh.normals) {
+    const dvec3 d = normal * dvec3(n);
+    const double length = glm::length(d);
+    n = length > 0 && std::isfinite(length) ? Vec3(d / length) : Vec3(0);
+  }
+  return mirror;
+}
+
+void wind_by_normals(Mesh& mesh) {
+  for (glm::uvec3& t : mesh.triangles) {
+    const dvec3 sum = dvec3(mesh.normals[t.x]) + dvec3(mesh.normals[t.y]) + dvec3(mesh.normals[t.z]);
+    if (glm::dot(face_cross(mesh, t), sum) < 0) std::swap(t.y, t.z);
+  }
+}
+
+void turn_winding(Mesh& mesh) {
+  for (glm::uvec3& t : mesh.triangles) std::swap(t.y, t.z);
+}
+
+}  // namespace
+
+dvec3 face_cross(const Mesh& mesh, const glm::uvec3& t) {
+  const dvec3 p(mesh.positions[t.x]);
+  return glm::cross(dvec3(mesh.positions[t.y]) - p, dvec3(mesh.positions[t.z]) - p);
+}
+
+void transform(Mesh& mesh, const Mat4& to_world) {
+  const bool had_normals = !mesh.normals.empty(), mirror = move(mesh, to_world);
+  for (const Vec3& p : mesh.positions)
+    if (!finite(p)) throw Error("a to_world transform moves a vertex beyond the range of numbers: use smaller factors");
+  if (mirror) turn_winding(mesh);
+  if (!had_normals) return;
+  fill_normals(mesh);
+  wind_by_normals(mesh);  // an uneven scale can move the sum of three normals to the other side
+}
+
+std::string read_bytes(const std::string& path) {
+  std::error_code ignored;
+  std::ifstream in(path, std::ios::binary);
+  if (!in || std::filesystem::is_directory(path, ignored))
+    throw Error(fmt::format("{}: cannot be read; is the name right, and is it a file?", path));
+  std::string bytes;
+  const auto size = std::filesystem::file_size(path, ignored);
+  bytes.resize(ignored ? 0 : size);
+  in.read(bytes.data(), std::streamsize(bytes.size()));
+  bytes.resize(size_t(in.gcount()));
+  return bytes;
+}
+
+void add_polygon(Mesh& mesh, std::span<const uint32_t> c) {
+  if (c.size() == 4) {
+    const glm::uvec3 a(c[0], c[1], c[2]), b(c[0], c[2], c[3]);
+    if (glm::dot(face_cross(mesh, a), face_cross(mesh, b)) < 0) {  // a reflex corner at c[1] or c[3]
+      mesh.triangles.insert(mesh.triangles.end(), {{c[1], c[2], c[3]}, {c[1], c[3], c[0]}});
+      return;
+    }
+  }
+  for (size_t i = 2; i < c.size(); ++i) mesh.triangles.push_back({c[0], c[i - 1], c[i]});
+}
+
+void complete(Mesh& mesh, const MeshOptions& options, const std::string& name) {
+  if (mesh.positions.size() >= none || mesh.triangles.size() >= none)
+    throw Error(fmt::format("{}: more than 2^32 - 2 vertices or triangles; split the mesh", name));
+  for (const glm::uvec3& t : mesh.triangles)
+    if (std::max(t.x, std::max(t.y, t.z)) >= mesh.positions.size())
+      throw Error(fmt::format("{}: triangle {} names a vertex beyond the last of {}", name, &t - mesh.triangles.data(),
+                              mesh.positions.size()));
+  const bool anew = options.max_smooth_angle >= 0;
+  if (options.face_normals || anew) mesh.normals.clear();
+  const bool own_normals = !mesh.normals.empty();
+  for (Vec2& uv : mesh.uvs) {
+    if (!std::isfinite(uv.x) || !std::isfinite(uv.y))
+      throw Error(fmt::format("{}: the texture coordinates of vertex {} are not finite", name, &uv - mesh.uvs.data()));
+    if (options.flip_v) uv.y = 1 - uv.y;
+  }
+  for (const Rgb& c : mesh.colors)
+    if (!finite(c))
+      throw Error(fmt::format("{}: the colour of vertex {} is not finite", name, &c - mesh.colors.data()));
+  for (const Vec3& p : mesh.positions)
+    if (!finite(p)) throw Error(fmt::format("{}: vertex {} is not finite", name, &p - mesh.positions.data()));
+  for (Vec3& n : mesh.normals)
+    if (!try_normalize(n)) n = Vec3(0);
+
+  move(mesh, options.to_world);
+  for (const Vec3& p : mesh.positions)
+    if (!finite(p))
+      throw Error(fmt::format("{}: the to_world transform moves vertex {} beyond the range of numbers", name,
+                              &p - mesh.positions.data()));
+  if (options.face_normals) {
+    if (options.flip_normals) turn_winding(mesh);
+    return;
+  }
+  if (anew)
+    split_sharp_edges(mesh, options.max_smooth_angle);
+  else if (!own_normals)
+    mesh.normals.assign(mesh.positions.size(), Vec3(0));
+  fill_normals(mesh);
+  if (options.flip_normals)
+    for (Vec3& n : mesh.normals) n = -n;
+  wind_by_normals(mesh);
+}
+
+}  // namespace ajar

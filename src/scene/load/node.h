@@ -1,0 +1,45 @@
+// Enters: the text of a scene file and of the files it includes.
+// Leaves: one tree of elements with one spelling of every name, parameters put in, and the place where each was written.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace ajar {
+
+/// An element. Tag, type and name are in snake_case; `written` keeps the type as the author spelt it.
+struct Node {
+  std::string tag, type, name, id, written;
+  std::vector<std::pair<std::string, std::string>> attributes;  ///< the others, names in snake_case
+  std::vector<Node> children;
+  uint32_t file = 0, line = 0;  ///< Document::files, counted from 1
+};
+
+struct Document {
+  Node root;                                  ///< <scene>, included files and all
+  std::vector<std::string> files;             ///< as they stand in messages
+  std::vector<std::string> folders;           ///< where relative names are looked for, in this order
+  std::map<std::string, std::string> aliases; ///< <alias>: new name to id
+  bool old = false;                           ///< version 0.x: a few defaults differ
+};
+
+/// Reads a scene. name stands in messages, folder resolves relative names. Throws Error.
+Document read_document(const std::string& text, const std::string& folder, const std::string& name,
+                       const std::map<std::string, std::string>& defines);
+
+/// toWorld, intIOR, alphaU -> to_world, int_ior, alpha_u; names in that spelling stay.
+std::string snake_case(const std::string& name);
+/// Whole file as bytes. Throws Error with the reason.
+std::string read_text(const std::string& path);
+/// The attribute's value, or nullptr.
+const std::string* attribute(const Node& node, const char* name);
+/// "scene.xml:41: <bsdf type="foo">", the beginning of every message about an element.
+std::string place(const Document& document, const Node& node);
+/// The regular file that a name means: as it stands, in the document's folders, with / for \, or beside the file that
+/// holds the element; empty if there is none.
+std::string find_file(const Document& document, const Node& node, const std::string& name);
+
+}  // namespace ajar

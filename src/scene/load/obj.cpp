@@ -1,0 +1,268 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "ajar/core/error.h"
+#include "ajar/core/sampler.h"
+#include "digits.h"
+#include "mesh.h"
+
+namespace ajar {
+namespace {
+
+// Corner of a face: indices from 0, none where the file gives none.
+struct Corner {
+  uint32_t v, vt, vn;
+  bool operator==(const Corner&) const = default;
+};
+
+struct Face {
+  size_t first;   // into corners; ends where the next face begins
+  uint32_t line;  // for messages
+};
+
+// The statements of the file, nothing joined yet.
+struct Statements {
+  std::vector<Vec3> v, vn;
+  std::vector<Vec2> vt;
+  std::vector<Rgb> colors;  // as many as v, or none
+  std::vector<Corner> corners;
+  std::vector<Face> faces;
+};
+
+struct Cursor {
+  const char* p;
+  const char* end;
+  const std::string& name;
+  uint32_t line = 1;
+
+  [[noreturn]] void fail(const std::string& what) const { throw Error(fmt::format("{}:{}: {}", name, line, what)); }
+
+  static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
+  bool at_break() const { return p == end || *p == '\n' || *p == '\r'; }
+
+  // Ends a line: LF, CR LF or CR.
+  void take_break() {
+    if (p == end) return;
+    if (*p == '\r' && p + 1 != end && p[1] == '\n') ++p;
+    ++p, ++line;
+  }
+
+  // Blanks, and line breaks that a backslash before them takes back.
+  void skip_blanks() {
+    while (p != end) {
+      if (is_blank(*p)) {
+        ++p;
+      } else if (*p == '\\') {
+        const char* q = p + 1;
+        while (q != end && is_blank(*q)) ++q;
+        if (q != end && *q != '\n' && *q != '\r') return;
+        p = q;
+        take_break();
+      } else {
+        return;
+      }
+    }
+  }
+
+  // At the end of what a statement says: a line break or a comment.
+  bool at_end() {
+    skip_blanks();
+    return at_break() || *p == '#';
+  }
+
+  // To the start of the next line. A comment is not continued.
+  void skip_line() {
+    while (!at_break()) ++p;
+    take_break();
+  }
+
+  bool ends_token() const { return at_break() || is_blank(*p) || *p == '#' || *p == '\\'; }
+
+  std::string token() const {
+    const char* q = p;
+    while (q != end && q - p < 40 && !is_blank(*q) && *q != '\n' && *q != '\r') ++q;
+    return std::string(p, q);
+  }
+
+  // Up to n numbers; returns how many there were.
+  int numbers(double* out, int n) {
+    int count = 0;
+    for (; count < n && !at_end(); ++count) {
+      const char* rest = read_number(p, end, out[count]);
+      const char* token_start = std::exchange(p, rest);
+      if (rest == token_start || !ends_token()) p = token_start, fail(fmt::format("\"{}\" is not a number", token()));
+    }
+    return count;
+  }
+};
+
+void read_vertex(Cursor& in, Statements& out) {
+  double x[7];
+  const int n = in.numbers(x, 7);
+  if (n < 3) in.fail(fmt::format("v has {} coordinates; it needs x y z", n));
+  const Vec3 p(x[0], x[1], x[2]);
+  if (!is_finite(p)) in.fail("a coordinate of v is not finite (or beyond the range of 32-bit floats)");
+  out.v.push_back(p);
+  const bool colored = n >= 6;  // v x y z w has no colour; v x y z r g b is a common extension
+  if (!colored && out.colors.empty()) return;
+  out.colors.resize(out.v.size(), Rgb(1));
+  if (!colored) return;
+  const Rgb color(x[n - 3], x[n - 2], x[n - 1]);
+  if (!is_finite(color)) in.fail("a colour of v is not finite");
+  out.colors.back() = color;
+}
+
+void read_texture_vertex(Cursor& in, Statements& out) {
+  double x[2] = {0, 0};
+  if (in.numbers(x, 2) < 1) in.fail("vt has no coordinates");
+  const Vec2 uv(x[0], x[1]);
+  if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) in.fail("a coordinate of vt is not finite");
+  out.vt.push_back(uv);
+}
+
+void read_normal(Cursor& in, Statements& out) {
+  double x[3];
+  const int n = in.numbers(x, 3);
+  if (n < 3) in.fail(fmt::format("vn has {} coordinates; it needs x y z", n));
+  const double largest = std::max({std::abs(x[0]), std::abs(x[1]), std::abs(x[2])});
+  const glm::dvec3 d = glm::dvec3(x[0], x[1], x[2]) / largest;  // its square stays in range
+  const double length = glm::length(d);                         // NaN where all are zero
+  out.vn.push_back(length > 0 && std::isfinite(length) ? Vec3(d / length) : Vec3(0));
+}
+
+// A number from 1, or one counted back from the latest (-1). Numbers ahead of their statements are checked later.
+uint32_t read_index(Cursor& in, size_t so_far, const char* what) {
+  int64_t i = 0;
+  const char* rest = read_integer(in.p, in.end, i);
+  if (rest == in.p) in.fail(fmt::format("\"{}\" is not a corner of a face (v, v/vt, v//vn or v/vt/vn)", in.token()));
+  if (i < 0) i += int64_t(so_far) + 1;
+  if (i < 1 || i >= none) in.fail(fmt::format("\"{}\": there is no such {}; {} so far", in.token(), what, so_far));
+  in.p = rest;
+  return uint32_t(i - 1);
+}
+
+void read_face(Cursor& in, Statements& out) {
+  out.faces.push_back({out.corners.size(), in.line});
+  while (!in.at_end()) {
+    Corner c{read_index(in, out.v.size(), "v"), none, none};
+    if (!in.at_break() && *in.p == '/') {
+      ++in.p;
+      if (!in.ends_token() && *in.p != '/') c.vt = read_index(in, out.vt.size(), "vt");
+      if (!in.at_break() && *in.p == '/') {
+        ++in.p;
+        if (!in.ends_token()) c.vn = read_index(in, out.vn.size(), "vn");
+      }
+    }
+    if (!in.ends_token()) in.fail(fmt::format("\"{}\" after a corner of a face", in.token()));
+    out.corners.push_back(c);
+  }
+}
+
+Statements read_statements(std::string_view text, const std::string& name) {
+  Statements out;
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  out.v.reserve(text.size() / 128), out.corners.reserve(text.size() / 32);
+  Cursor in{text.data(), text.data() + text.size(), name};
+  while (in.p != in.end) {
+    if (!in.at_end()) {
+      const char* word = in.p;
+      while (!in.ends_token()) ++in.p;
+      const std::string_view keyword(word, size_t(in.p - word));
+      if (keyword == "v")
+        read_vertex(in, out);
+      else if (keyword == "vt")
+        read_texture_vertex(in, out);
+      else if (keyword == "vn")
+        read_normal(in, out);
+      else if (keyword == "f")
+        read_face(in, out);
+    }
+    in.skip_line();
+  }
+  return out;
+}
+
+// Open addressing from corners to vertices of the mesh.
+struct VertexTable {
+  std::vector<uint32_t> slots;  // vertex, or none
+  std::vector<Corner> keys;     // by vertex
+
+  static uint64_t mix(const Corner& c) { return hash(uint64_t(c.v) << 32 | c.vt, c.vn); }
+
+  // Vertex of the corner; a new one (the last) where there is none yet.
+  uint32_t find(const Corner& c) {
+    if (2 * (keys.size() + 1) > slots.size()) grow();
+    const size_t mask = slots.size() - 1;
+    size_t i = mix(c) & mask;
+    for (; slots[i] != none; i = (i + 1) & mask)
+      if (keys[slots[i]] == c) return slots[i];
+    keys.push_back(c);
+    return slots[i] = uint32_t(keys.size() - 1);
+  }
+
+  void grow() {
+    slots.assign(std::max<size_t>(64, slots.size() * 4), none);
+    const size_t mask = slots.size() - 1;
+    for (size_t k = 0; k < keys.size(); ++k) {
+      size_t i = mix(keys[k]) & mask;
+      while (slots[i] != none) i = (i + 1) & mask;
+      slots[i] = uint32_t(k);
+    }
+  }
+};
+
+void check_range(const Statements& in, const Face& face, const Corner& c, const std::string& name) {
+  const auto check = [&](uint32_t i, size_t n, const char* what) {
+    if (i != none && i >= n)
+      throw Error(fmt::format("{}:{}: f names {} {} of {}", name, face.line, what, uint64_t(i) + 1, n));
+  };
+  check(c.v, in.v.size(), "v");
+  check(c.vt, in.vt.size(), "vt");
+  check(c.vn, in.vn.size(), "vn");
+}
+
+Mesh join(const Statements& in, const std::string& name) {
+  Mesh mesh;
+  VertexTable table;
+  std::vector<uint32_t> polygon;
+  mesh.triangles.reserve(in.corners.size() / 2);
+  for (size_t f = 0; f < in.faces.size(); ++f) {
+    const size_t end = f + 1 < in.faces.size() ? in.faces[f + 1].first : in.corners.size();
+    polygon.clear();
+    for (size_t i = in.faces[f].first; i < end; ++i) {
+      const Corner& c = in.corners[i];
+      check_range(in, in.faces[f], c, name);
+      polygon.push_back(table.find(c));
+      if (table.keys.size() > mesh.positions.size()) mesh.positions.push_back(in.v[c.v]);
+    }
+    add_polygon(mesh, polygon);
+  }
+  // Left empty where no corner says anything; absent ones among others are 0: no texture, normal to be computed.
+  const auto gather = [&](auto& to, const auto& from, uint32_t Corner::*index) {
+    if (std::none_of(table.keys.begin(), table.keys.end(), [&](const Corner& c) { return c.*index != none; })) return;
+    to.reserve(table.keys.size());
+    for (const Corner& c : table.keys)
+      to.push_back(c.*index == none ? std::decay_t<decltype(from[0])>(0) : from[c.*index]);
+  };
+  gather(mesh.uvs, in.vt, &Corner::vt);
+  gather(mesh.normals, in.vn, &Corner::vn);
+  if (!in.colors.empty()) gather(mesh.colors, in.colors, &Corner::v);
+  return mesh;
+}
+
+}  // namespace
+
+Mesh parse_obj(std::string_view text, const std::string& name, const MeshOptions& options) {
+  Mesh mesh = join(read_statements(text, name), name);
+  complete(mesh, options, name);
+  return mesh;
+}
+
+Mesh read_obj(const std::string& path, const MeshOptions& options) {
+  return parse_obj(read_bytes(path), path, options);
+}
+
+}  // namespace ajar

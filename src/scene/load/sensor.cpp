@@ -1,0 +1,193 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "loader.h"
+
+namespace ajar {
+namespace {
+
+constexpr int max_film = 65536;
+constexpr double film_diagonal = 43.266615305567875;  // mm, of 36 x 24
+
+void read_film(Loader& loader, const Node& node, Camera& camera) {
+  Params p(loader, node);
+  static constexpr const char* known[] = {"hdrfilm", "ldrfilm", "mfilm", "tiledhdrfilm"};
+  if (std::find(std::begin(known), std::end(known), node.type) == std::end(known))
+    unsupported(loader, node, fmt::format("unknown film; supported: {}", fmt::join(known, ", ")), "read as hdrfilm");
+  camera.width = integer(p, "width", 768, 1, max_film);
+  camera.height = integer(p, "height", 576, 1, max_film);
+  camera.crop_x = integer(p, "crop_offset_x", 0, 0, camera.width - 1);
+  camera.crop_y = integer(p, "crop_offset_y", 0, 0, camera.height - 1);
+  camera.crop_width = integer(p, "crop_width", camera.width - camera.crop_x, 1, camera.width - camera.crop_x);
+  camera.crop_height = integer(p, "crop_height", camera.height - camera.crop_y, 1, camera.height - camera.crop_y);
+}
+
+Filter read_filter(Loader& loader, const Node& node) {
+  Params p(loader, node);
+  static constexpr std::pair<const char*, FilterKind> kinds[] = {
+      {"box", FilterKind::box},           {"tent", FilterKind::tent},
+      {"gaussian", FilterKind::gaussian}, {"mitchell", FilterKind::mitchell},
+      {"catmullrom", FilterKind::catmullrom}, {"lanczos", FilterKind::lanczos}};
+  const std::string name = node.type == "lanczossinc" ? "lanczos" : node.type;
+  const auto found = std::find_if(std::begin(kinds), std::end(kinds), [&](const auto& k) { return name == k.first; });
+  if (found == std::end(kinds)) {
+    unsupported(loader, node, "unknown filter; supported: box, tent, gaussian, mitchell, catmullrom, lanczos",
+                "gaussian in its place");
+    return make_filter(FilterKind::gaussian, 0, 0.5f);
+  }
+  const auto sized = [&](const char* parameter, double otherwise) {
+    const double x = positive(p, parameter, otherwise);
+    if (x > 16 || x < 0.05) fail(loader, node, fmt::format("{} should be from 0.05 to 16 pixels", parameter));
+    return float(x);
+  };
+  const FilterKind kind = found->second;
+  const float radius = has(p, "radius") && kind != FilterKind::lanczos ? sized("radius", 1) : 0;
+  Filter filter;
+  if (kind == FilterKind::gaussian) {
+    filter = make_filter(kind, radius, sized("stddev", 0.5));
+  } else if (kind == FilterKind::mitchell) {
+    const double b = number(p, "b", 1.0 / 3), c = number(p, has(p, "a") ? "a" : "c", 1.0 / 3);
+    if (!(std::abs(b) <= 4 && std::abs(c) <= 4)) fail(loader, node, "B and C should be from -4 to 4");
+    filter = make_filter(kind, radius, float(b), float(c));
+  } else if (kind == FilterKind::lanczos) {
+    filter = make_filter(kind, 0, float(integer(p, "lobes", 3, 1, 16)));
+  } else {
+    filter = make_filter(kind, radius);
+  }
+  finish(p);
+  return filter;
+}
+
+// Tangent of half the field of view along x, from whatever the file gives.
+double tan_half_x(Params& p, const Camera& camera) {
+  const double aspect = double(camera.width) / camera.height;
+  double tan_half = 0;
+  std::string axis = choice(p, "fov_axis", "x", {"x", "y", "diagonal", "smaller", "larger"});
+  if (has(p, "fov")) {
+    const double fov = number(p, "fov", 0);
+    if (!(fov >= 1e-3 && fov <= 179.9)) fail(p.loader, p.node, "fov should be from 0.001 to 179.9 degrees");
+    tan_half = std::tan(glm::radians(fov) / 2);
+  } else {
+    std::string mm = text(p, "focal_length", "50mm");
+    if (mm.ends_with("mm")) mm.resize(mm.size() - 2);
+    const std::optional<double> focal = to_number(mm);
+    if (!focal || !(*focal >= 0.1 && *focal <= 1e6)) fail(p.loader, p.node, "focal_length should be like \"50mm\"");
+    tan_half = film_diagonal / (2 * *focal);
+    axis = "diagonal";
+  }
+  if (axis == "smaller") axis = aspect > 1 ? "y" : "x";
+  if (axis == "larger") axis = aspect > 1 ? "x" : "y";
+  if (axis == "y") return tan_half * aspect;
+  if (axis == "diagonal") return tan_half * aspect / std::hypot(aspect, 1.0);
+  return tan_half;
+}
+
+// Splits a camera's transform into scale along its axes and a rigid rest, which may be mirrored.
+DVec3 take_scale(Params& p, DMat4& m) {
+  const DVec3 scale{glm::length(DVec3(m[0])), glm::length(DVec3(m[1])), glm::length(DVec3(m[2]))};
+  if (!(std::min({scale.x, scale.y, scale.z}) > 1e-30)) fail(p.loader, p.node, "its to_world is singular");
+  const DVec3 z = DVec3(m[2]) / scale.z;
+  DVec3 y = DVec3(m[1]) / scale.y, x = DVec3(m[0]) / scale.x;
+  if (std::abs(glm::dot(x, y)) > 1e-3 || std::abs(glm::dot(y, z)) > 1e-3 || std::abs(glm::dot(z, x)) > 1e-3)
+    fail(p.loader, p.node, "its to_world is sheared");
+  y = glm::normalize(y - z * glm::dot(y, z));  // the digits of a text file are not exactly at right angles
+  x = glm::normalize(x - z * glm::dot(x, z) - y * glm::dot(x, y));
+  m[0] = DMat4::col_type(x, 0);
+  m[1] = DMat4::col_type(y, 0);
+  m[2] = DMat4::col_type(z, 0);
+  return scale;
+}
+
+void read_lens(Params& p, Camera& camera, const DVec3& scale) {
+  if (camera.kind != CameraKind::thinlens) return;
+  camera.aperture = float(positive(p, "aperture_radius", 0));
+  if (!(camera.aperture > 0)) fail(p.loader, p.node, "needs an aperture_radius greater than 0");
+  camera.focus = float(positive(p, "focus_distance", scale.z > 0 ? 1 : 1));
+}
+
+void read_clip(Params& p, Camera& camera) {
+  camera.near_clip = float(number(p, "near_clip", 1e-2));
+  camera.far_clip = float(number(p, "far_clip", 1e4));
+  const bool flat = camera.kind == CameraKind::orthographic;
+  if (!(flat || camera.near_clip >= 0) || !(camera.far_clip > camera.near_clip))
+    fail(p.loader, p.node, "near_clip and far_clip should be 0 <= near < far");
+}
+
+void read_view(Params& p, Camera& camera) {
+  DMat4 m = to_world(p);
+  const DVec3 scale = take_scale(p, m);
+  const double aspect = double(camera.width) / camera.height;
+  if (camera.kind == CameraKind::orthographic) {
+    camera.to_world = Mat4(m);
+    camera.to_camera = Mat4(glm::inverse(m));
+    camera.plane = Vec2(float(scale.x), float(scale.y / aspect));
+  } else {
+    const double tan_x = tan_half_x(p, camera) * scale.x / scale.z;
+    set_perspective(camera, float(glm::degrees(2 * std::atan(tan_x))), Mat4(m));
+    camera.plane = Vec2(float(tan_x), float(tan_x / aspect * scale.y / scale.x));
+  }
+  const double x = number(p, "principal_point_offset_x", 0), y = number(p, "principal_point_offset_y", 0);
+  if (!(std::abs(x) <= 100 && std::abs(y) <= 100)) fail(p.loader, p.node, "principal_point_offset should be small");
+  camera.principal = Vec2(float(x), float(y));
+  read_lens(p, camera, scale);
+  read_clip(p, camera);
+}
+
+void read_sampler(Loader& loader, const Node& node) {
+  Params p(loader, node);
+  const int count = integer(p, "sample_count", 0, 0, 1 << 30);
+  if (count > 0) loader.scene.hints.spp = count;
+}
+
+}  // namespace
+
+void load_sensor(Loader& loader, const Node& node) {
+  Params p(loader, node);
+  Camera& camera = loader.scene.camera;
+  if (node.type == "perspective" || node.type == "thinlens" || node.type == "orthographic") {
+    camera.kind = node.type == "perspective" ? CameraKind::perspective
+                  : node.type == "thinlens"  ? CameraKind::thinlens
+                                             : CameraKind::orthographic;
+  } else {
+    unsupported(loader, node, "unknown sensor; supported: perspective, thinlens, orthographic", "read as perspective");
+  }
+  camera.crop_width = camera.width;
+  camera.crop_height = camera.height;
+  loader.scene.filter = make_filter(FilterKind::gaussian, 0, 0.5f);
+  const std::vector<const Node*> films = nested(p, "film");
+  if (films.size() > 1) note(loader, node, "has more than one film: the first one counts");
+  if (!films.empty()) {
+    read_film(loader, *films.front(), camera);
+    Params film(loader, *films.front());
+    for (const Node* filter : nested(film, "rfilter")) loader.scene.filter = read_filter(loader, *filter);
+  }
+  for (const Node* sampler : nested(p, "sampler")) read_sampler(loader, *sampler);
+  for (const Node* medium : nested(p, "medium"))
+    unsupported(loader, *medium, "participating media are not supported", "left out");
+  read_view(p, camera);
+  if (camera.kind != CameraKind::thinlens) find(p, {"focus_distance", "aperture_radius"});
+  if (camera.kind == CameraKind::orthographic) find(p, {"fov", "fov_axis"});
+  finish(p, {"id", "shutter_open", "shutter_close", "srf"});
+}
+
+void load_integrator(Loader& loader, const Node& node) {
+  Hints& hints = loader.scene.hints;
+  Params p(loader, node);
+  const std::vector<const Node*> inner = nested(p, "integrator");
+  const int depth = integer(p, "max_depth", -1, -1, 1 << 30);
+  if (has(p, "max_depth")) hints.max_depth = depth == 0 ? -1 : depth;
+  static constexpr std::pair<const char*, const char*> same[] = {{"volpath", "path"}, {"volpath_simple", "path"},
+                                                                 {"volpathmis", "path"}, {"ptracer", "light"},
+                                                                 {"guided_path", "guided-path"}};
+  const auto alias = std::find_if(std::begin(same), std::end(same), [&](const auto& s) { return node.type == s.first; });
+  hints.integrator = alias == std::end(same) ? node.written : alias->second;
+  if (boolean(p, "hide_emitters", false)) note(loader, node, "hide_emitters is not supported: lights are visible");
+  if (!inner.empty()) {
+    const Open open(loader, node);
+    load_integrator(loader, *inner.front());
+    return;
+  }
+}
+
+}  // namespace ajar

@@ -1,0 +1,170 @@
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <bit>
+#include <cstring>
+
+#include "ajar/core/error.h"
+#include "mesh.h"
+
+namespace ajar {
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+// The layout is documented with Mitsuba's shape plugin "serialized".
+constexpr uint16_t magic = 0x041c;
+constexpr size_t header_size = 4;  // magic and version, the only parts of a mesh that are not compressed
+enum Flags : uint32_t {
+  has_normals = 0x1,
+  has_uvs = 0x2,
+  has_colors = 0x8,
+  face_normals = 0x10,
+  single_precision = 0x1000,
+  double_precision = 0x2000
+};
+
+template <class T>
+T load(std::span<const std::byte> bytes, size_t at) {
+  T out;
+  std::memcpy(&out, bytes.data() + at, sizeof(T));
+  return out;
+}
+
+// Inflates piece by piece, so that counts which lie cost no more memory than the data there really is.
+struct Inflater {
+  z_stream stream{};
+  std::span<const std::byte> left;
+  const std::string& name;
+
+  Inflater(std::span<const std::byte> bytes, const std::string& file) : left(bytes), name(file) {
+    if (inflateInit(&stream) != Z_OK) throw Error(name + ": zlib cannot start; is there enough memory?");
+  }
+  Inflater(const Inflater&) = delete;
+  Inflater& operator=(const Inflater&) = delete;
+  ~Inflater() { inflateEnd(&stream); }
+
+  void feed() {
+    if (stream.avail_in > 0 || left.empty()) return;
+    const size_t n = std::min<size_t>(left.size(), 1u << 30);
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(left.data()));
+    stream.avail_in = uInt(n);
+    left = left.subspan(n);
+  }
+
+  void read(void* to, size_t n) {
+    auto* out = static_cast<Bytef*>(to);
+    while (n > 0) {
+      feed();
+      const uInt wanted = uInt(std::min<size_t>(n, 1u << 30));
+      stream.next_out = out, stream.avail_out = wanted;
+      const int result = inflate(&stream, Z_NO_FLUSH);
+      const size_t got = wanted - stream.avail_out;
+      out += got, n -= got;
+      if (n == 0) break;
+      if (result == Z_DATA_ERROR || result == Z_NEED_DICT || result == Z_MEM_ERROR)
+        throw Error(fmt::format("{}: the compressed data are damaged ({})", name, stream.msg ? stream.msg : "zlib"));
+      if (result == Z_STREAM_END || (got == 0 && stream.avail_in == 0 && left.empty()))
+        throw Error(name + ": the compressed data end before the mesh does; is the file whole?");
+    }
+  }
+
+  template <class T>
+  T value() {
+    T out;
+    read(&out, sizeof(T));
+    return out;
+  }
+
+  // count items of N numbers each, stored as Stored, appended as T.
+  template <class Stored, class T, int N>
+  void array(std::vector<T>& out, size_t count) {
+    constexpr size_t piece = 16384;
+    std::vector<Stored> buffer(std::min(count, piece) * N);
+    out.reserve(std::min<size_t>(count, 1u << 16));
+    for (size_t done = 0; done < count;) {
+      const size_t n = std::min(count - done, piece);
+      read(buffer.data(), n * N * sizeof(Stored));
+      out.resize(done + n);
+      for (size_t i = 0; i < n; ++i)
+        for (int k = 0; k < N; ++k) out[done + i][k] = typename T::value_type(buffer[i * N + size_t(k)]);
+      done += n;
+    }
+  }
+
+  template <class T, int N>
+  void array(std::vector<T>& out, size_t count, bool doubles) {
+    doubles ? array<double, T, N>(out, count) : array<float, T, N>(out, count);
+  }
+};
+
+uint16_t check_header(std::span<const std::byte> bytes, size_t at, const std::string& name) {
+  if (at + header_size > bytes.size()) throw Error(name + ": too short for a serialized mesh; is the file whole?");
+  if (load<uint16_t>(bytes, at) != magic)
+    throw Error(fmt::format("{}: no serialized mesh at byte {} (0x041c is expected there)", name, at));
+  const uint16_t version = load<uint16_t>(bytes, at + 2);
+  if (version != 3 && version != 4)
+    throw Error(fmt::format("{}: serialized format {}; versions 3 and 4 are supported", name, version));
+  return version;
+}
+
+// Where a mesh starts, from the dictionary at the end of the file; the first one starts at 0 by definition.
+size_t find_mesh(std::span<const std::byte> bytes, uint16_t version, int shape_index, const std::string& name) {
+  if (shape_index < 0) throw Error(fmt::format("{}: shape_index {} is negative; they count from 0", name, shape_index));
+  if (shape_index == 0) return 0;
+  const size_t width = version == 4 ? 8 : 4, index = size_t(shape_index);
+  const size_t count = load<uint32_t>(bytes, bytes.size() - 4);
+  if (count > (bytes.size() - 4) / width)
+    throw Error(name + ": no dictionary of meshes at the end; is the file whole?");
+  if (index >= count)
+    throw Error(fmt::format("{}: shape_index {}, but the file holds {} meshes (0 to {})", name, shape_index, count,
+                            int64_t(count) - 1));
+  const size_t dictionary = bytes.size() - 4 - count * width, entry = dictionary + index * width;
+  const uint64_t offset = version == 4 ? load<uint64_t>(bytes, entry) : load<uint32_t>(bytes, entry);
+  if (offset + header_size > dictionary || offset > bytes.size())
+    throw Error(fmt::format("{}: mesh {} starts at byte {}, beyond the last", name, shape_index, offset));
+  return size_t(offset);
+}
+
+void skip_name(Inflater& in) {
+  for (int length = 0; in.value<char>() != 0; ++length)
+    if (length == 1 << 16) throw Error(in.name + ": a mesh name of more than 64 KiB; the file is damaged");
+}
+
+}  // namespace
+
+Mesh parse_serialized(std::span<const std::byte> bytes, const std::string& name, int shape_index,
+                      const MeshOptions& options) {
+  const uint16_t version = check_header(bytes, 0, name);
+  const size_t start = find_mesh(bytes, version, shape_index, name);
+  const uint16_t own_version = check_header(bytes, start, name);
+  Inflater in(bytes.subspan(start + header_size), name);
+  const uint32_t flags = in.value<uint32_t>();
+  const bool doubles = flags & double_precision;
+  if (doubles == bool(flags & single_precision))
+    throw Error(fmt::format("{}: flags {:#x} say neither or both of single and double precision", name, flags));
+  if (own_version == 4) skip_name(in);
+  const uint64_t vertices = in.value<uint64_t>(), triangles = in.value<uint64_t>();
+  // Beyond this the format's indices are 64 bits wide, and a Mesh's are not.
+  if (vertices >= none || triangles >= none)
+    throw Error(
+        fmt::format("{}: {} vertices, {} triangles; at most 2^32 - 2 are supported", name, vertices, triangles));
+
+  Mesh mesh;
+  in.array<Vec3, 3>(mesh.positions, vertices, doubles);
+  if (flags & has_normals) in.array<Vec3, 3>(mesh.normals, vertices, doubles);
+  if (flags & has_uvs) in.array<Vec2, 2>(mesh.uvs, vertices, doubles);
+  if (flags & has_colors) in.array<Rgb, 3>(mesh.colors, vertices, doubles);
+  in.array<uint32_t, glm::uvec3, 3>(mesh.triangles, triangles);
+  MeshOptions own = options;
+  own.face_normals |= bool(flags & face_normals);
+  complete(mesh, own, fmt::format("{} (mesh {})", name, shape_index));
+  return mesh;
+}
+
+Mesh read_serialized(const std::string& path, int shape_index, const MeshOptions& options) {
+  const std::string bytes = read_bytes(path);
+  return parse_serialized(std::as_bytes(std::span(bytes)), path, shape_index, options);
+}
+
+}  // namespace ajar

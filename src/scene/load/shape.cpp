@@ -1,0 +1,252 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ajar/core/error.h"
+#include "loader.h"
+
+namespace ajar {
+namespace {
+
+constexpr const char* supported =
+    "supported: obj, ply, serialized, rectangle, cube, sphere, disk, cylinder, shapegroup, instance, merge";
+constexpr int sphere_rings = 128, sphere_segments = 256;  // of a sphere that its transform makes an ellipsoid
+
+double determinant(const DMat4& m) { return glm::dot(DVec3(m[0]), glm::cross(DVec3(m[1]), DVec3(m[2]))); }
+
+// Flat shapes do not use the z column: one that is zero or lies in the plane is replaced, the surface stays the same.
+void repair_flat(DMat4& m) {
+  const DVec3 x(m[0]), y(m[1]), z(m[2]), n = glm::cross(x, y);
+  const double area = glm::length(n);
+  if (area > 0 && std::abs(glm::dot(n, z)) <= 1e-12 * area * std::max(glm::length(z), std::sqrt(area)))
+    m[2] = DMat4::col_type(n / std::sqrt(area), 0);
+}
+
+void check_invertible(const Loader& loader, const Node& node, const DMat4& m) {
+  const double size = glm::length(DVec3(m[0])) * glm::length(DVec3(m[1])) * glm::length(DVec3(m[2]));
+  if (!(size > 1e-90) || !(std::abs(determinant(m)) > 1e-14 * size))
+    fail(loader, node, "its to_world is singular: it flattens the shape");
+  const Mat4 inverse = Mat4(glm::inverse(m));
+  for (int i = 0; i < 4; ++i)
+    if (!is_finite(Vec3(inverse[i]))) fail(loader, node, "its to_world is beyond the range of numbers");
+}
+
+DMat4 shape_to_world(Params& p, bool flat) {
+  DMat4 m = to_world(p);
+  if (flat) repair_flat(m);
+  check_invertible(p.loader, p.node, m);
+  return m;
+}
+
+void place_quadric(Params& p, Shape& shape, const DMat4& m) {
+  check_invertible(p.loader, p.node, m);
+  shape.to_world = Mat4(m);
+  shape.to_object = Mat4(glm::inverse(m));
+}
+
+void turn(Mesh& mesh) {
+  for (glm::uvec3& t : mesh.triangles) std::swap(t.y, t.z);
+  for (Vec3& n : mesh.normals) n = -n;
+}
+
+uint32_t add_mesh(Params& p, Mesh&& mesh) {
+  p.loader.scene.meshes.push_back(std::move(mesh));
+  return uint32_t(p.loader.scene.meshes.size() - 1);
+}
+
+// A mesh without a file.
+void simple_mesh(Params& p, Shape& shape, Mesh&& mesh, const DMat4& m) {
+  transform(mesh, Mat4(m));
+  if (boolean(p, "flip_normals", false)) turn(mesh);
+  if (boolean(p, "face_normals", false)) mesh.normals.clear();
+  shape.mesh = add_mesh(p, std::move(mesh));
+}
+
+void sphere(Params& p, Shape& shape) {
+  const Node* at = find(p, {"center"});
+  const DVec3 center = at == nullptr ? DVec3(0) : vector_of(p.loader, *at, 0);
+  const double radius = positive(p, "radius", 1);
+  DMat4 local(radius);
+  local[3] = DMat4::col_type(center, 1);
+  const DMat4 m = shape_to_world(p, false) * local;
+  check_invertible(p.loader, p.node, m);
+  if (!is_similarity(m)) {
+    note(p.loader, p.node, fmt::format("to_world makes an ellipsoid of it: rendered as a mesh of {} x {} cells",
+                                       sphere_rings, sphere_segments));
+    simple_mesh(p, shape, make_sphere(sphere_rings, sphere_segments), m);
+    return;
+  }
+  shape.kind = ShapeKind::sphere;
+  shape.flip = boolean(p, "flip_normals", false);
+  place_quadric(p, shape, m);
+}
+
+void disk(Params& p, Shape& shape) {
+  shape.kind = ShapeKind::disk;
+  shape.flip = boolean(p, "flip_normals", false);
+  DMat4 m = shape_to_world(p, true);
+  const double radius = positive(p, "radius", 1);
+  m[0] *= radius;
+  m[1] *= radius;
+  place_quadric(p, shape, m);
+}
+
+void cylinder(Params& p, Shape& shape) {
+  shape.kind = ShapeKind::cylinder;
+  shape.flip = boolean(p, "flip_normals", false);
+  const Node *from = find(p, {"p0"}), *to = find(p, {"p1"});
+  const DVec3 p0 = from == nullptr ? DVec3(0) : vector_of(p.loader, *from, 0);
+  const DVec3 p1 = to == nullptr ? DVec3(0, 0, 1) : vector_of(p.loader, *to, 0);
+  const double radius = positive(p, "radius", 1), length = glm::length(p1 - p0);
+  if (!(length > 0)) fail(p.loader, p.node, "p0 and p1 are the same point");
+  const DVec3 z = (p1 - p0) / length;
+  const DVec3 x = glm::normalize(std::abs(z.x) < 0.8 ? glm::cross(DVec3(1, 0, 0), z) : glm::cross(DVec3(0, 1, 0), z));
+  DMat4 local(1);
+  local[0] = DMat4::col_type(x * radius, 0);
+  local[1] = DMat4::col_type(glm::cross(z, x) * radius, 0);
+  local[2] = DMat4::col_type(p1 - p0, 0);
+  local[3] = DMat4::col_type(p0, 1);
+  place_quadric(p, shape, shape_to_world(p, false) * local);
+}
+
+void rectangle(Params& p, Shape& shape) { simple_mesh(p, shape, make_rectangle(), shape_to_world(p, true)); }
+void cube(Params& p, Shape& shape) { simple_mesh(p, shape, make_cube(), shape_to_world(p, false)); }
+
+// Meshes from files: what more than one shape names is parsed once, where moving it afterwards changes nothing.
+template <class Read>
+void file_mesh(Params& p, Shape& shape, const std::string& key, MeshOptions options, const Read& read) {
+  const DMat4 m = shape_to_world(p, false);
+  options.face_normals = boolean(p, "face_normals", false);
+  options.flip_normals = boolean(p, "flip_normals", false);
+  options.max_smooth_angle = float(number(p, "max_smooth_angle", -1));
+  options.flip_v = boolean(p, "flip_tex_coords", options.flip_v);
+  Mesh mesh;
+  try {
+    if (p.loader.mesh_uses[key] > 1 && is_similarity(m) && determinant(m) > 0) {
+      const std::string exact = fmt::format("{}|{}{}{}|{}", key, options.face_normals, options.flip_normals,
+                                            options.flip_v, options.max_smooth_angle);
+      auto found = p.loader.meshes.find(exact);
+      if (found == p.loader.meshes.end()) found = p.loader.meshes.emplace(exact, read(options)).first;
+      mesh = found->second;
+      transform(mesh, Mat4(m));
+    } else {
+      options.to_world = Mat4(m);
+      mesh = read(options);
+    }
+  } catch (const Error& error) {
+    fail(p.loader, p.node, error.what());
+  }
+  shape.mesh = add_mesh(p, std::move(mesh));
+}
+
+void obj(Params& p, Shape& shape) {
+  const std::string path = file(p, "filename");
+  MeshOptions options;
+  options.flip_v = true;
+  file_mesh(p, shape, path, options, [&](const MeshOptions& o) { return read_obj(path, o); });
+}
+
+void ply(Params& p, Shape& shape) {
+  const std::string path = file(p, "filename");
+  file_mesh(p, shape, path, {}, [&](const MeshOptions& o) { return read_ply(path, o); });
+}
+
+void serialized(Params& p, Shape& shape) {
+  const std::string path = file(p, "filename");
+  const int index = integer(p, "shape_index", 0, 0, 1 << 24);
+  file_mesh(p, shape, fmt::format("{}#{}", path, index), {},
+            [&](const MeshOptions& o) { return read_serialized(path, index, o); });
+}
+
+struct Entry {
+  const char* type;
+  void (*read)(Params&, Shape&);
+};
+constexpr Entry entries[] = {{"obj", obj},   {"rectangle", rectangle}, {"sphere", sphere}, {"serialized", serialized},
+                             {"ply", ply},   {"cube", cube},           {"disk", disk},     {"cylinder", cylinder}};
+
+uint32_t material_of(Params& p, bool emits) {
+  const std::vector<const Node*> bsdfs = nested(p, "bsdf");
+  if (bsdfs.size() > 1) fail(p.loader, p.node, "has more than one bsdf");
+  if (!bsdfs.empty()) return load_bsdf(p.loader, *bsdfs.front());
+  uint32_t& shared = emits ? p.loader.black : p.loader.grey;
+  if (shared == none) {
+    shared = uint32_t(p.loader.scene.materials.size());
+    p.loader.scene.materials.emplace_back().reflectance = Slot(emits ? 0.0f : 0.5f);
+  }
+  return shared;
+}
+
+void refuse_media(Params& p) {
+  for (const Node* medium : nested(p, "medium"))
+    unsupported(p.loader, *medium, fmt::format("participating media are not supported (shape at line {})", p.node.line),
+                "left out");
+  for (const Node* inside : nested(p, "subsurface"))
+    unsupported(p.loader, *inside, "subsurface scattering is not supported", "left out");
+}
+
+void load_instance(Loader& loader, const Node& node, uint32_t group) {
+  if (group != none) fail(loader, node, "an instance inside a shapegroup is not supported");
+  Params p(loader, node);
+  const std::vector<const Node*> groups = nested(p, "shape");
+  if (groups.size() != 1 || groups.front()->type != "shapegroup")
+    fail(loader, node, "needs a <ref> to one <shape type=\"shapegroup\">");
+  Instance instance;
+  const DMat4 m = shape_to_world(p, false);
+  instance.group = load_shape_group(loader, *groups.front());
+  instance.to_world = Mat4(m);
+  instance.to_object = Mat4(glm::inverse(m));
+  loader.scene.instances.push_back(instance);
+  finish(p, {"id"});
+}
+
+}  // namespace
+
+uint32_t load_shape_group(Loader& loader, const Node& node) {
+  const auto found = loader.groups.find(&node);
+  if (found != loader.groups.end()) return found->second;
+  const Open open(loader, node);
+  const uint32_t group = loader.scene.groups++;
+  loader.groups.emplace(&node, group);
+  Params p(loader, node);
+  for (const Node* shape : nested(p, "shape")) load_shape(loader, *shape, group);
+  finish(p);
+  return group;
+}
+
+void load_shape(Loader& loader, const Node& node, uint32_t group) {
+  const Open open(loader, node);
+  if (node.type == "shapegroup") {
+    if (group != none) fail(loader, node, "a shapegroup inside a shapegroup is not supported");
+    load_shape_group(loader, node);
+    return;
+  }
+  if (node.type == "instance") return load_instance(loader, node, group);
+  Params p(loader, node);
+  if (node.type == "merge") {
+    for (const Node* shape : nested(p, "shape")) load_shape(loader, *shape, group);
+    return finish(p);
+  }
+  const auto entry = std::find_if(std::begin(entries), std::end(entries), [&](const Entry& e) { return node.type == e.type; });
+  if (entry == std::end(entries))
+    return unsupported(loader, node, fmt::format("unknown shape; {}", supported), "left out");
+  Shape shape;
+  shape.group = group;
+  shape.name = !node.id.empty() ? node.id : fmt::format("{}:{}", node.type, node.line);
+  entry->read(p, shape);
+  refuse_media(p);
+  const std::vector<const Node*> emitters = nested(p, "emitter");
+  if (emitters.size() > 1) fail(loader, node, "has more than one emitter");
+  if (!emitters.empty() && group != none) fail(loader, node, "a light inside a shapegroup is not supported");
+  shape.material = material_of(p, !emitters.empty());
+  finish(p, {"id", "velocity"});
+  if (shape.kind == ShapeKind::mesh && loader.scene.meshes[shape.mesh].triangles.empty()) {
+    note(loader, node, "has no faces: left out");
+    loader.scene.meshes.pop_back();
+    return;
+  }
+  loader.scene.shapes.push_back(std::move(shape));
+  if (!emitters.empty()) load_emitter(loader, *emitters.front(), uint32_t(loader.scene.shapes.size() - 1));
+}
+
+}  // namespace ajar

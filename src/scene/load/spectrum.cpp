@@ -1,0 +1,187 @@
+#include <fmt/format.h>
+
+#include <charconv>
+#include <limits>
+#include <sstream>
+
+#include "loader.h"
+
+namespace ajar {
+namespace {
+
+double from_srgb(double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); }  // IEC 61966-2-1
+
+Rgb checked(Loader& loader, const Node& node, Rgb c, Colour kind) {
+  if (!is_finite(c)) fail(loader, node, "is beyond the range of numbers");
+  if (std::min({c.x, c.y, c.z}) < 0) {
+    note(loader, node, "a colour outside the sRGB primaries: negative parts were set to 0");
+    c = glm::max(c, Rgb(0));
+  }
+  if (kind == Colour::reflectance && max_component(c) > 1) {
+    note(loader, node, "a reflectance above 1 would make light from nothing: it was set to 1");
+    c = glm::min(c, Rgb(1));
+  }
+  return c;
+}
+
+const std::string& value_of(const Loader& loader, const Node& node) {
+  const std::string* value = attribute(node, "value");
+  if (value == nullptr) fail(loader, node, "needs value=\"...\"");
+  return *value;
+}
+
+Rgb rgb_of(const Loader& loader, const Node& node, bool encoded) {
+  std::string_view value = value_of(loader, node);
+  while (value.starts_with(' ')) value.remove_prefix(1);
+  while (value.ends_with(' ')) value.remove_suffix(1);
+  DVec3 c;
+  if (value.starts_with('#')) {
+    uint32_t hex = 0;
+    const auto [end, error] = std::from_chars(value.data() + 1, value.data() + value.size(), hex, 16);
+    if (value.size() != 7 || error != std::errc() || end != value.data() + value.size())
+      fail(loader, node, fmt::format("\"{}\" should be #rrggbb", value.substr(0, 80)));
+    c = DVec3(hex >> 16, hex >> 8 & 255, hex & 255) / 255.0;
+  } else {
+    const auto list = to_numbers(value);
+    if (!list || (list->size() != 3 && list->size() != 1))
+      fail(loader, node, fmt::format("\"{}\" should be one number, three or #rrggbb", value.substr(0, 80)));
+    c = list->size() == 1 ? DVec3((*list)[0]) : DVec3((*list)[0], (*list)[1], (*list)[2]);
+  }
+  return encoded ? Rgb(from_srgb(c.x), from_srgb(c.y), from_srgb(c.z)) : Rgb(c);
+}
+
+using List = std::vector<std::pair<double, double>>;
+
+// "400:0.1, 500:0.2"
+List pairs_of(const Loader& loader, const Node& node, std::string value) {
+  for (char& c : value)
+    if (c == ',') c = ' ';
+  List list;
+  std::istringstream words(value);
+  for (std::string word; words >> word;) {
+    const size_t colon = word.find(':');
+    std::string second = colon == word.npos ? "" : word.substr(colon + 1);
+    if (colon != word.npos && second.empty()) words >> second;  // "400: 0.1"
+    const auto nm = to_number(word.substr(0, colon)), x = to_number(second);
+    if (!nm || !x) fail(loader, node, fmt::format("\"{}\" should be wavelength:value", word.substr(0, 80)));
+    list.emplace_back(*nm, *x);
+  }
+  return list;
+}
+
+List pairs_of_file(const Loader& loader, const Node& node, const std::string& name) {
+  const std::string path = find_file(loader.document, node, name);
+  if (path.empty()) fail(loader, node, fmt::format("there is no file \"{}\"", name.substr(0, 200)));
+  List list;
+  std::istringstream lines(read_text(path));
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    line.erase(std::min(line.find('#'), line.size()));
+    const auto pair = to_numbers(line);
+    if (!pair || (!pair->empty() && pair->size() != 2))
+      fail(loader, node, fmt::format("{}:{}: a line should hold wavelength and value", path, number));
+    if (!pair->empty()) list.emplace_back((*pair)[0], (*pair)[1]);
+  }
+  return list;
+}
+
+Rgb of_list(Loader& loader, const Node& node, List list, Colour kind) {
+  if (list.empty()) fail(loader, node, "holds no wavelengths");
+  for (const auto& [nm, x] : list)
+    if (!(nm > 0 && nm < 1e6) || !(std::abs(x) < 1e30)) fail(loader, node, fmt::format("{}:{} is out of range", nm, x));
+  return rgb_of_list(std::move(list), kind);
+}
+
+Rgb plain_spectrum(Loader& loader, const Node& node, Colour kind) {
+  if (const std::string* name = attribute(node, "filename"))
+    return of_list(loader, node, pairs_of_file(loader, node, *name), kind);
+  const std::string& value = value_of(loader, node);
+  if (value.find(':') != value.npos) return of_list(loader, node, pairs_of(loader, node, value), kind);
+  return rgb_of(loader, node, false);
+}
+
+double kelvin_of(const Loader& loader, const Node& node, std::string_view value) {
+  while (value.ends_with(' ')) value.remove_suffix(1);
+  if (value.ends_with('K') || value.ends_with('k')) value.remove_suffix(1);
+  const auto kelvin = to_number(value);
+  if (!kelvin || !(*kelvin > 0 && *kelvin <= 1e6))
+    fail(loader, node, fmt::format("\"{}\" should be a temperature up to 1e6 kelvin", value.substr(0, 80)));
+  return *kelvin;
+}
+
+// values and wavelengths in separate strings (Mitsuba 2, 3)
+Rgb tabulated(Params& p, Colour kind) {
+  const auto values = to_numbers(text(p, "values", text(p, "value", "")));
+  if (!values || values->empty()) fail(p.loader, p.node, "needs <string name=\"values\" value=\"...\"/>");
+  List list;
+  if (p.node.type == "regular") {
+    const double low = number(p, "wavelength_min", number(p, "lambda_min", 360));
+    const double high = number(p, "wavelength_max", number(p, "lambda_max", 830));
+    if (!(high > low) || values->size() < 2) fail(p.loader, p.node, "needs two values and a range of wavelengths");
+    for (size_t i = 0; i < values->size(); ++i)
+      list.emplace_back(low + (high - low) * double(i) / double(values->size() - 1), (*values)[i]);
+  } else {
+    const auto wavelengths = to_numbers(text(p, "wavelengths", ""));
+    if (!wavelengths || wavelengths->size() != values->size())
+      fail(p.loader, p.node, "needs as many wavelengths as values");
+    for (size_t i = 0; i < values->size(); ++i) list.emplace_back((*wavelengths)[i], (*values)[i]);
+  }
+  return of_list(p.loader, p.node, list, kind);
+}
+
+Rgb plugin_spectrum(Loader& loader, const Node& node, Colour kind) {
+  Params p(loader, node);
+  const Open open(loader, node);
+  Rgb c(0);
+  if (node.type == "uniform" || node.type == "rawconstant") {
+    c = colour(p, "value", Rgb(1), kind);
+  } else if (node.type == "d65") {
+    c = colour(p, "color", Rgb(1), kind) * float(number(p, "scale", 1));
+  } else if (node.type == "srgb" || node.type == "srgb_d65") {
+    c = colour(p, "color", Rgb(1), kind) * float(number(p, "scale", 1));
+  } else if (node.type == "blackbody") {
+    const double kelvin = kelvin_of(loader, node, text(p, "temperature", "0"));
+    c = rgb_of_blackbody(kelvin) * float(number(p, "scale", 1));
+  } else if (node.type == "regular" || node.type == "irregular") {
+    c = tabulated(p, kind);
+  } else {
+    fail(loader, node,
+         "unknown spectrum; supported: uniform, d65, srgb, srgb_d65, rawconstant, blackbody, regular, irregular, and "
+         "textures");
+  }
+  finish(p);
+  return c;
+}
+
+}  // namespace
+
+Rgb colour_of(Loader& loader, const Node& node, Colour kind) {
+  if (node.tag == "spectrum" || node.tag == "texture")
+    return checked(loader, node,
+                   node.type.empty() ? plain_spectrum(loader, node, kind) : plugin_spectrum(loader, node, kind), kind);
+  if (node.tag == "blackbody") {
+    const std::string* kelvin = attribute(node, "temperature");
+    if (kelvin == nullptr) fail(loader, node, "needs temperature=\"...\"");
+    return checked(loader, node,
+                   rgb_of_blackbody(kelvin_of(loader, node, *kelvin)) * float(number_attribute(loader, node, "scale", 1)),
+                   kind);
+  }
+  if (node.tag == "rgb" || node.tag == "srgb") return checked(loader, node, rgb_of(loader, node, node.tag == "srgb"), kind);
+  if (node.tag == "float" || node.tag == "integer" || node.tag == "string") {
+    const auto x = to_number(value_of(loader, node));
+    if (!x) fail(loader, node, fmt::format("\"{}\" is not a number", value_of(loader, node).substr(0, 80)));
+    return checked(loader, node, Rgb(float(*x)), kind);
+  }
+  fail(loader, node, "a number, <rgb>, <spectrum> or <texture> is expected here");
+}
+
+Rgb colour(Params& params, const char* name, const Rgb& otherwise, Colour kind) {
+  const Node* node = find(params, {name});
+  if (node == nullptr) return otherwise;
+  const Node& meant = follow(params.loader, *node);
+  if (is_texture(meant)) fail(params.loader, *node, "has to be one colour here, not a texture");
+  return colour_of(params.loader, meant, kind);
+}
+
+}  // namespace ajar

@@ -1,0 +1,281 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <pugixml.hpp>
+#include <set>
+#include <string_view>
+
+#include "ajar/core/error.h"
+#include "node.h"
+
+namespace ajar {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Far beyond any real scene; they stop files that mean to exhaust stack or memory.
+constexpr int max_depth = 64;
+constexpr int max_include_depth = 15;
+constexpr size_t max_nodes = 8'000'000;
+constexpr size_t max_value = 1 << 20;
+constexpr size_t max_text = size_t(1) << 30;
+
+struct Reader {
+  Document& document;
+  const std::map<std::string, std::string>& defines;
+  std::map<std::string, std::string> parameters;  // defines, then what <default> adds
+  std::set<std::string> declared, used;
+  std::vector<std::string> including;  // canonical paths from the scene to the file being read
+  size_t nodes = 0;
+};
+
+struct Source {
+  const std::string& text;
+  std::vector<size_t> newlines;
+  uint32_t file = 0;
+  std::string folder;
+};
+
+Source make_source(const std::string& text, uint32_t file, const std::string& folder) {
+  Source s{text, {}, file, folder};
+  for (size_t i = text.find('\n'); i != std::string::npos; i = text.find('\n', i + 1)) s.newlines.push_back(i);
+  return s;
+}
+
+uint32_t line_at(const Source& s, ptrdiff_t offset) {
+  const auto at = std::lower_bound(s.newlines.begin(), s.newlines.end(), size_t(std::max<ptrdiff_t>(offset, 0)));
+  return uint32_t(at - s.newlines.begin()) + 1;
+}
+
+[[noreturn]] void fail(const Reader& r, const Source& s, const pugi::xml_node& node, const std::string& text) {
+  throw Error(fmt::format("{}:{}: <{}>: {}", r.document.files[s.file], line_at(s, node.offset_debug()), node.name(),
+                          text));
+}
+
+std::string known_parameters(const Reader& r) {
+  std::string list;
+  for (const auto& [name, value] : r.parameters) list += (list.empty() ? "" : ", ") + name;
+  return list.empty() ? "it has none" : "known are " + list;
+}
+
+// Puts in the value of every $name; of several names that fit, the longest is meant.
+std::string substitute(Reader& r, const Source& s, const pugi::xml_node& node, const char* value) {
+  std::string out;
+  std::string_view rest = value;
+  for (size_t dollar; (dollar = rest.find('$')) != rest.npos;) {
+    out += rest.substr(0, dollar);
+    rest.remove_prefix(dollar + 1);
+    const std::pair<const std::string, std::string>* found = nullptr;
+    for (const auto& p : r.parameters)
+      if (rest.starts_with(p.first) && (found == nullptr || p.first.size() > found->first.size())) found = &p;
+    if (found == nullptr) {
+      size_t n = 0;
+      while (n < rest.size() && (std::isalnum(static_cast<unsigned char>(rest[n])) != 0 || rest[n] == '_')) ++n;
+      const std::string name(rest.substr(0, n));
+      fail(r, s, node,
+           fmt::format("the parameter ${} has no value here: give -D {}=VALUE or write <default name=\"{}\" "
+                       "value=\"...\"/> above; {}",
+                       name, name, name, known_parameters(r)));
+    }
+    r.used.insert(found->first);
+    out += found->second;
+    rest.remove_prefix(found->first.size());
+    if (out.size() > max_value) fail(r, s, node, "its parameters expand to more than a million characters");
+  }
+  return out.append(rest);
+}
+
+Node make_node(Reader& r, const Source& s, const pugi::xml_node& xml) {
+  if (++r.nodes > max_nodes) fail(r, s, xml, "the scene has more than eight million elements");
+  Node node;
+  node.file = s.file;
+  node.line = line_at(s, xml.offset_debug());
+  node.tag = snake_case(xml.name());
+  if (node.tag == "look_at") node.tag = "lookat";
+  for (const pugi::xml_attribute& a : xml.attributes()) {
+    std::string value = substitute(r, s, xml, a.value());
+    const std::string name = snake_case(a.name());
+    if (name == "type") {
+      node.type = snake_case(value);
+      node.written = std::move(value);
+    } else if (name == "name") {
+      node.name = snake_case(value);
+    } else if (name == "id") {
+      node.id = std::move(value);
+    } else {
+      node.attributes.emplace_back(name, std::move(value));
+    }
+  }
+  return node;
+}
+
+void read_children(Reader& r, const Source& s, const pugi::xml_node& xml, Node& into, int depth);
+
+const std::string& need(const Reader& r, const Source& s, const pugi::xml_node& xml, const Node& node,
+                        const char* name) {
+  const std::string* value = attribute(node, name);
+  if (value == nullptr || value->empty()) fail(r, s, xml, fmt::format("needs {}=\"...\"", name));
+  return *value;
+}
+
+void read_default(Reader& r, const Source& s, const pugi::xml_node& xml, const Node& node) {
+  const std::string name = xml.attribute("name").value();  // parameters keep their spelling
+  if (name.empty()) fail(r, s, xml, "needs name=\"...\"");
+  const std::string* value = attribute(node, "value");
+  if (value == nullptr) fail(r, s, xml, "needs value=\"...\"");
+  r.declared.insert(name);
+  r.parameters.emplace(name, *value);
+}
+
+void parse(Reader& r, pugi::xml_document& xml, const Source& s, const std::string& name) {
+  const pugi::xml_parse_result result = xml.load_buffer(s.text.data(), s.text.size());
+  if (result.status == pugi::status_no_document_element || s.text.find_first_not_of(" \t\r\n") == std::string::npos)
+    throw Error(fmt::format("{}: holds no XML element; a scene begins with <scene version=\"3.0.0\">", name));
+  if (!result)
+    throw Error(fmt::format("{}:{}: not well-formed XML: {}", r.document.files[s.file], line_at(s, result.offset),
+                            result.description()));
+}
+
+void read_include(Reader& r, const Source& s, const pugi::xml_node& xml, const Node& node, Node& into, int depth) {
+  const std::string& name = need(r, s, xml, node, "filename");
+  const std::string path = find_file(r.document, node, name);
+  if (path.empty()) fail(r, s, xml, fmt::format("there is no file {}", name));
+  const std::string canonical = fs::weakly_canonical(path).string();
+  if (std::find(r.including.begin(), r.including.end(), canonical) != r.including.end())
+    fail(r, s, xml, fmt::format("{} includes itself", name));
+  if (int(r.including.size()) > max_include_depth)
+    fail(r, s, xml, fmt::format("files include each other more than {} deep", max_include_depth));
+  const std::string text = read_text(path);
+  r.document.files.push_back(path);
+  const Source inner = make_source(text, uint32_t(r.document.files.size() - 1), fs::path(path).parent_path().string());
+  pugi::xml_document parsed;
+  parse(r, parsed, inner, path);
+  r.including.push_back(canonical);
+  const pugi::xml_node root = parsed.document_element();
+  if (std::string_view(root.name()) == "scene") {
+    read_children(r, inner, root, into, depth);
+  } else {
+    Node child = make_node(r, inner, root);
+    read_children(r, inner, root, child, depth + 1);
+    into.children.push_back(std::move(child));
+  }
+  r.including.pop_back();
+}
+
+void read_path(Reader& r, const Source& s, const pugi::xml_node& xml, const Node& node) {
+  const fs::path folder = need(r, s, xml, node, "value");
+  std::error_code ignored;
+  for (const fs::path& candidate : {fs::path(s.folder) / folder, fs::path(r.document.folders.back()) / folder})
+    if (fs::is_directory(candidate, ignored)) {
+      r.document.folders.insert(r.document.folders.begin(), candidate.string());
+      return;
+    }
+  fail(r, s, xml, fmt::format("there is no folder {}", folder.string()));
+}
+
+void read_children(Reader& r, const Source& s, const pugi::xml_node& xml, Node& into, int depth) {
+  if (depth > max_depth) fail(r, s, xml, fmt::format("elements are nested more than {} deep", max_depth));
+  for (const pugi::xml_node& child : xml.children()) {
+    if (child.type() != pugi::node_element) continue;
+    Node node = make_node(r, s, child);
+    if (node.tag == "default") {
+      read_default(r, s, child, node);
+    } else if (node.tag == "include") {
+      read_include(r, s, child, node, into, depth);
+    } else if (node.tag == "path") {
+      read_path(r, s, child, node);
+    } else if (node.tag == "alias") {
+      r.document.aliases.emplace(need(r, s, child, node, "as"), node.id);
+    } else {
+      read_children(r, s, child, node, depth + 1);
+      into.children.push_back(std::move(node));
+    }
+  }
+}
+
+}  // namespace
+
+std::string snake_case(const std::string& name) {
+  std::string out;
+  const auto upper = [](char c) { return c >= 'A' && c <= 'Z'; };
+  for (size_t i = 0; i < name.size(); ++i) {
+    if (upper(name[i]) && i > 0 && !upper(name[i - 1]) && name[i - 1] != '_' && name[i - 1] != '-') out += '_';
+    out += upper(name[i]) ? char(name[i] - 'A' + 'a') : name[i];
+  }
+  return out;
+}
+
+std::string read_text(const std::string& path) {
+  std::error_code error;
+  if (!fs::exists(path, error)) throw Error(fmt::format("{}: there is no such file", path));
+  if (!fs::is_regular_file(path, error)) throw Error(fmt::format("{}: is not a file", path));
+  if (fs::file_size(path, error) > max_text) throw Error(fmt::format("{}: is larger than 1 GB", path));
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw Error(fmt::format("{}: cannot be opened for reading", path));
+  return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+const std::string* attribute(const Node& node, const char* name) {
+  for (const auto& [key, value] : node.attributes)
+    if (key == name) return &value;
+  return nullptr;
+}
+
+std::string place(const Document& document, const Node& node) {
+  std::string element = "<" + node.tag;
+  if (!node.written.empty()) element += fmt::format(" type=\"{}\"", node.written);
+  if (!node.name.empty()) element += fmt::format(" name=\"{}\"", node.name);
+  if (!node.id.empty()) element += fmt::format(" id=\"{}\"", node.id);
+  return fmt::format("{}:{}: {}>", document.files[node.file], node.line, element);
+}
+
+std::string find_file(const Document& document, const Node& node, const std::string& name) {
+  if (name.empty() || name.find('\0') != name.npos || name.size() > 4096) return {};
+  std::error_code ignored;
+  const auto look = [&](const std::string& spelt) -> std::string {
+    for (const std::string& folder : document.folders)
+      if (const fs::path path = fs::path(folder) / spelt; fs::is_regular_file(path, ignored)) return path.string();
+    const fs::path beside = fs::path(document.files[node.file]).parent_path() / spelt;
+    return fs::is_regular_file(beside, ignored) ? beside.string() : std::string();
+  };
+  std::string found = look(name);
+  if (found.empty() && name.find('\\') != name.npos) {
+    std::string slashes = name;
+    std::replace(slashes.begin(), slashes.end(), '\\', '/');
+    found = look(slashes);
+  }
+  return found;
+}
+
+Document read_document(const std::string& text, const std::string& folder, const std::string& name,
+                       const std::map<std::string, std::string>& defines) {
+  Document document;
+  document.files.push_back(name);
+  document.folders.push_back(folder.empty() ? "." : folder);
+  Reader r{document, defines, defines, {}, {}, {}};
+  std::error_code ignored;
+  r.including.push_back(fs::weakly_canonical(fs::path(name), ignored).string());
+  const Source source = make_source(text, 0, document.folders.front());
+  pugi::xml_document xml;
+  parse(r, xml, source, name);
+  const pugi::xml_node root = xml.document_element();
+  if (std::string_view(root.name()) != "scene")
+    fail(r, source, root, "the file's outermost element should be <scene>; is this a Mitsuba scene?");
+  document.root = make_node(r, source, root);
+  const std::string* version = attribute(document.root, "version");
+  document.old = version != nullptr && version->starts_with("0.");
+  read_children(r, source, root, document.root, 0);
+  for (const auto& [key, value] : defines)
+    if (!r.declared.contains(key) && !r.used.contains(key)) {
+      r.parameters.erase(key);
+      throw Error(fmt::format("{}: -D {}: the scene has no parameter of this name; {}", name, key,
+                              known_parameters(r)));
+    }
+  return document;
+}
+
+}  // namespace ajar

@@ -1,0 +1,175 @@
+#include "ajar/scene/scene.h"
+
+namespace ajar {
+namespace {
+
+// Coordinates are folded before they become integers, so that any number is safe; large ones have no fraction anyway.
+float fold(Wrap wrap, float x) {
+  if (!(std::abs(x) < 1e9f)) return 0;
+  if (wrap == Wrap::repeat) return x - std::floor(x);
+  if (wrap == Wrap::mirror) {
+    const float in_two = x - 2 * std::floor(x * 0.5f);
+    return in_two > 1 ? 2 - in_two : in_two;
+  }
+  return std::clamp(x, -1.0f, 2.0f);
+}
+
+// Index of a texel, -1 outside (zero, one). i lies within a texel of [0, n), or further out where it does not matter.
+int wrapped(Wrap wrap, int i, int n) {
+  if (i >= 0 && i < n) return i;
+  switch (wrap) {
+    case Wrap::repeat:
+      return i < 0 ? n - 1 : 0;
+    case Wrap::mirror:
+    case Wrap::clamp:
+      return i < 0 ? 0 : n - 1;
+    default:
+      return -1;
+  }
+}
+
+Rgb outside(Wrap wrap) { return Rgb(wrap == Wrap::one ? 1.0f : 0.0f); }
+
+Rgb texel(const Texture& t, const Image& image, int x, int y) {
+  const int i = wrapped(t.wrap_u, x, image.width), j = wrapped(t.wrap_v, y, image.height);
+  if (i < 0) return outside(t.wrap_u);
+  if (j < 0) return outside(t.wrap_v);
+  return texel(image, i, j, t.channel);
+}
+
+// Position in texels, (0,0) the upper left corner of the image.
+Vec2 texel_position(const Texture& t, const Image& image, const Vec2& uv) {
+  const Vec3 at = t.to_uv * Vec3(uv, 1);
+  const float x = fold(t.wrap_u, at.x), y = fold(t.wrap_v, at.y);
+  return {x * float(image.width), (t.flip_v ? 1 - y : y) * float(image.height)};
+}
+
+// The four texels around a position, and where between them it lies.
+struct Patch {
+  Rgb c00, c10, c01, c11;
+  Vec2 at;
+};
+Patch patch(const Texture& t, const Image& image, const Vec2& uv) {
+  const Vec2 p = texel_position(t, image, uv) - 0.5f;
+  const Vec2 corner(std::floor(p.x), std::floor(p.y));
+  const int x = int(corner.x), y = int(corner.y);
+  return {texel(t, image, x, y), texel(t, image, x + 1, y), texel(t, image, x, y + 1), texel(t, image, x + 1, y + 1),
+          p - corner};
+}
+
+Rgb eval_bitmap(const Scene& scene, const Texture& t, const Vec2& uv) {
+  const Image& image = scene.images[t.image];
+  if (t.nearest) {
+    const Vec2 p = texel_position(t, image, uv);
+    return texel(t, image, int(std::floor(p.x)), int(std::floor(p.y)));
+  }
+  const Patch q = patch(t, image, uv);
+  return (q.c00 * (1 - q.at.x) + q.c10 * q.at.x) * (1 - q.at.y) + (q.c01 * (1 - q.at.x) + q.c11 * q.at.x) * q.at.y;
+}
+
+// Colour 0 where both coordinates lie in the same half of their period.
+const Slot& checker(const Texture& t, const Vec2& uv) {
+  const Vec3 at = t.to_uv * Vec3(uv, 1);
+  const bool left = at.x - std::floor(at.x) < 0.5f, low = at.y - std::floor(at.y) < 0.5f;
+  return left == low ? t.color0 : t.color1;
+}
+
+Rgb eval_attribute(const Scene& scene, const Surface& at) {
+  const Shape& shape = scene.shapes[at.shape];
+  if (shape.kind != ShapeKind::mesh) return Rgb(0);
+  const Mesh& mesh = scene.meshes[shape.mesh];
+  if (mesh.colors.empty()) return Rgb(0);
+  const glm::uvec3 t = mesh.triangles[at.prim];
+  return mesh.colors[t.x] * (1 - at.bary.x - at.bary.y) + mesh.colors[t.y] * at.bary.x + mesh.colors[t.z] * at.bary.y;
+}
+
+float reduce(const Rgb& c) { return c.x == c.y && c.y == c.z ? c.x : luminance(c); }
+
+Vec2 bitmap_gradient(const Scene& scene, const Texture& t, const Vec2& uv) {
+  const Image& image = scene.images[t.image];
+  const Patch q = patch(t, image, uv);
+  const float c00 = reduce(q.c00), c10 = reduce(q.c10), c01 = reduce(q.c01), c11 = reduce(q.c11);
+  float dx = ((c10 - c00) * (1 - q.at.y) + (c11 - c01) * q.at.y) * float(image.width);
+  float dy = ((c01 - c00) * (1 - q.at.x) + (c11 - c10) * q.at.x) * float(image.height);
+  if (t.flip_v) dy = -dy;
+  const Vec3 at = t.to_uv * Vec3(uv, 1);
+  const auto mirrored = [](Wrap wrap, float x) { return wrap == Wrap::mirror && x - 2 * std::floor(x * 0.5f) > 1; };
+  if (mirrored(t.wrap_u, at.x)) dx = -dx;
+  if (mirrored(t.wrap_v, at.y)) dy = -dy;
+  return {dx * t.to_uv[0].x + dy * t.to_uv[0].y, dx * t.to_uv[1].x + dy * t.to_uv[1].y};
+}
+
+Rgb mean_texel(const Image& image, Channel channel) {
+  glm::dvec3 sum(0);
+  for (int y = 0; y < image.height; ++y) {
+    Rgb row(0);
+    for (int x = 0; x < image.width; ++x) row += texel(image, x, y, channel);
+    sum += glm::dvec3(row);
+  }
+  return sum / (double(image.width) * double(image.height));
+}
+
+Rgb mean_attribute(const Scene& scene) {
+  glm::dvec3 sum(0);
+  size_t n = 0;
+  for (const Mesh& mesh : scene.meshes) {
+    for (const Rgb& c : mesh.colors) sum += glm::dvec3(c);
+    n += mesh.colors.size();
+  }
+  return n > 0 ? Rgb(sum / double(n)) : Rgb(0);
+}
+
+}  // namespace
+
+Rgb eval(const Scene& scene, const Slot& slot, const Surface& at) {
+  if (slot.texture == none) return slot.value;
+  const Texture& t = scene.textures[slot.texture];
+  switch (t.kind) {
+    case TextureKind::bitmap:
+      return eval_bitmap(scene, t, at.uv);
+    case TextureKind::checkerboard:
+      return eval(scene, checker(t, at.uv), at);
+    case TextureKind::scale:
+      return eval(scene, t.color0, at) * eval(scene, t.color1, at);
+    case TextureKind::mesh_attribute:
+      return eval_attribute(scene, at);
+  }
+  return Rgb(0);
+}
+
+float eval_scalar(const Scene& scene, const Slot& slot, const Surface& at) { return reduce(eval(scene, slot, at)); }
+
+Vec2 eval_gradient(const Scene& scene, const Slot& slot, const Surface& at) {
+  if (slot.texture == none) return {0, 0};
+  const Texture& t = scene.textures[slot.texture];
+  switch (t.kind) {
+    case TextureKind::bitmap:
+      return bitmap_gradient(scene, t, at.uv);
+    case TextureKind::checkerboard:
+      return eval_gradient(scene, checker(t, at.uv), at);
+    case TextureKind::scale:
+      return eval_gradient(scene, t.color0, at) * eval_scalar(scene, t.color1, at) +
+             eval_gradient(scene, t.color1, at) * eval_scalar(scene, t.color0, at);
+    case TextureKind::mesh_attribute:
+      return {0, 0};
+  }
+  return {0, 0};
+}
+
+Rgb mean(const Scene& scene, const Slot& slot) {
+  if (slot.texture == none) return slot.value;
+  const Texture& t = scene.textures[slot.texture];
+  switch (t.kind) {
+    case TextureKind::bitmap:
+      return mean_texel(scene.images[t.image], t.channel);
+    case TextureKind::checkerboard:
+      return (mean(scene, t.color0) + mean(scene, t.color1)) * 0.5f;
+    case TextureKind::scale:
+      return mean(scene, t.color0) * mean(scene, t.color1);
+    case TextureKind::mesh_attribute:
+      return mean_attribute(scene);
+  }
+  return Rgb(0);
+}
+
+}  // namespace ajar

@@ -1,0 +1,114 @@
+// ajar compare, as a user calls it.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "ajar/core/error.h"
+#include "ajar/film/picture.h"
+#include "app/commands.h"
+
+namespace ajar {
+namespace {
+
+struct Compare : testing::Test {
+  std::filesystem::path folder;
+  std::string a, b, variance, diff;
+
+  void SetUp() override {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder = std::filesystem::path(testing::TempDir()) /
+             ("ajar compare " + std::string(info->name()) + " " + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder);
+    a = (folder / "a.exr").string();
+    b = (folder / "b.exr").string();
+    variance = (folder / "variance.exr").string();
+    diff = (folder / "diff.png").string();
+    write_exr(a, grey(8, 6, 1.5f), {}, false);
+    write_exr(b, grey(8, 6, 1), {}, false);
+    write_exr(variance, grey(8, 6, 0.01f), {}, false);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder); }
+
+  static Picture grey(int width, int height, float value) {
+    return {width, height, {"R", "G", "B"}, std::vector<float>(size_t(3 * width * height), value)};
+  }
+
+  /// Standard output of a run; throws what the command throws.
+  static std::string run(std::vector<std::string> arguments) {
+    CLI::App app;
+    add_compare(app);
+    arguments.insert(arguments.begin(), "compare");
+    std::reverse(arguments.begin(), arguments.end());
+    testing::internal::CaptureStdout();
+    try {
+      app.parse(arguments);
+    } catch (...) {
+      testing::internal::GetCapturedStdout();
+      throw;
+    }
+    return testing::internal::GetCapturedStdout();
+  }
+
+  static std::string error_of(const std::vector<std::string>& arguments) {
+    try {
+      run(arguments);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return {};
+  }
+};
+
+TEST_F(Compare, PrintsOneLine) {
+  const std::string line = run({a, b});
+  EXPECT_EQ(line.find('\n'), line.size() - 1);
+  const auto json = nlohmann::json::parse(line);
+  EXPECT_DOUBLE_EQ(json["mean"], 1.5);
+  EXPECT_DOUBLE_EQ(json["mse"], 0.25);
+  EXPECT_TRUE(json["z_p"].is_null());
+}
+
+TEST_F(Compare, VarianceFileAddsTheTest) {
+  const auto json = nlohmann::json::parse(run({a, b, "--variance", variance}));
+  EXPECT_NEAR(json["z_mean"].get<double>(), 5, 1e-3);
+  EXPECT_LT(json["z_p"].get<double>(), 1e-6);
+  write_exr(variance, grey(8, 6, -0.01f), {}, false);
+  EXPECT_NE(error_of({a, b, "--variance", variance}).find("variance.exr: channel Variance.R of pixel (0, 0)"),
+            std::string::npos);
+  write_exr(variance, grey(8, 5, 0.01f), {}, false);
+  EXPECT_NE(error_of({a, b, "--variance", variance}).find("variance.exr: "), std::string::npos);
+}
+
+TEST_F(Compare, CropComparesAPart) {
+  Picture picture = grey(8, 6, 1);
+  picture.pixels[size_t(3 * (2 * 8 + 5))] = std::numeric_limits<float>::quiet_NaN();
+  write_exr(a, picture, {}, false);
+  EXPECT_NE(error_of({a, b}).find("a.exr: channel R of pixel (5, 2) is nan"), std::string::npos) << error_of({a, b});
+  EXPECT_EQ(nlohmann::json::parse(run({a, b, "--crop", "0", "0", "5", "6"}))["mse"], 0);
+  EXPECT_NE(error_of({a, b, "--crop", "0", "0", "9", "6"}).find("a.exr: a crop of 9x6"), std::string::npos);
+}
+
+TEST_F(Compare, DiffIsAPicture) {
+  run({a, b, "--diff", diff});
+  const Picture picture = read_picture(diff);
+  EXPECT_EQ(picture.width, 8);
+  EXPECT_GT(picture.pixels[0], picture.pixels[2]) << "brighter is red";
+}
+
+TEST_F(Compare, ErrorsNameBothSizesOrTheFile) {
+  write_exr(b, grey(7, 6, 1), {}, false);
+  const std::string error = error_of({a, b});
+  for (const char* part : {"a.exr", "8x6", "b.exr", "7x6", "--crop"})
+    EXPECT_NE(error.find(part), std::string::npos) << error;
+  EXPECT_NE(error_of({a, b + "x"}).find("b.exrx: there is no such file"), std::string::npos);
+  EXPECT_NE(error_of({a, a, "--diff", (folder / "none" / "d.png").string()}).find("d.png: cannot be written"),
+            std::string::npos);
+  EXPECT_THROW(run({a}), CLI::ParseError);
+}
+
+}  // namespace
+}  // namespace ajar

@@ -1,0 +1,23 @@
+# Installs a build into a scratch folder, builds tests/install against it and renders a scene with both programs.
+# Usage: cmake -DBUILD=<build folder> -DGUEST=<tests/install> -DSCENE=<file> -DSCRATCH=<folder> -DGENERATOR=<name>
+#              -DCOMPILER=<c++> -DFLAGS=<compiler flags> -P run.cmake
+cmake_minimum_required(VERSION 3.22)
+
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE said ERROR_VARIABLE said)
+  if(NOT code EQUAL 0)
+    list(JOIN ARGN " " command)
+    message(FATAL_ERROR "failed (${code}): ${command}\n${said}")
+  endif()
+  message(NOTICE "${said}")
+endfunction()
+
+file(REMOVE_RECURSE ${SCRATCH})
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${SCRATCH}/prefix)
+run(${CMAKE_COMMAND} -S ${GUEST} -B ${SCRATCH}/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${SCRATCH}/prefix
+    -DCMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_FLAGS=${FLAGS}" "-DCMAKE_EXE_LINKER_FLAGS=${FLAGS}")
+run(${CMAKE_COMMAND} --build ${SCRATCH}/build)
+run(${SCRATCH}/build/guest ${SCENE} ${SCRATCH}/guest.exr)
+run(${SCRATCH}/prefix/bin/ajar render ${SCENE} -o ${SCRATCH}/ajar.exr --spp 4 --quiet)
+run(${SCRATCH}/prefix/bin/ajar compare ${SCRATCH}/guest.exr ${SCRATCH}/ajar.exr)
+file(REMOVE_RECURSE ${SCRATCH})

@@ -1,0 +1,34 @@
+#include "kit/oracle.h"
+
+#include <cmath>
+#include <cstddef>
+
+namespace ajar::kit {
+
+std::vector<long double> densities(const OraclePath& path) {
+  const auto& x = path.vertices;
+  const size_t n = x.size();
+  std::vector<long double> out(n, 0);
+  for (size_t s = 0; s < n; ++s) {
+    const size_t t = n - s;
+    const bool joined_at_delta = s > 0 && (x[s - 1].delta || x[s].delta);
+    if (joined_at_delta || (s == 0 && !path.hittable) || (s == 1 && t == 1)) continue;
+    long double product = t == 1 ? path.light_paths : 1;
+    for (size_t i = 0; i < s; ++i) product *= i == 0 && s == 1 ? path.nee : x[i].light;
+    for (size_t i = s; i < n; ++i) product *= i == n - 1 ? 1 : x[i].camera;
+    out[s] = product;
+  }
+  return out;
+}
+
+std::vector<long double> weights(const OraclePath& path, int exponent) {
+  std::vector<long double> out = densities(path);
+  long double largest = 0, sum = 0;
+  for (const long double p : out) largest = std::fmax(largest, p);
+  if (!(largest > 0)) return out;
+  for (long double& p : out) sum += p = std::pow(p / largest, static_cast<long double>(exponent));
+  for (long double& p : out) p /= sum;
+  return out;
+}
+
+}  // namespace ajar::kit

@@ -1,0 +1,29 @@
+// Enters: the densities of a whole path's vertices as both sides would have generated them.
+// Leaves: the weights of all strategies, by multiplying out every density: slow, without prefix sums, in long double.
+#pragma once
+
+#include <vector>
+
+namespace ajar::kit {
+
+/// A vertex of a path, or a direction at infinity. Densities as End (join/mis.h) has them.
+struct OracleVertex {
+  long double light = 1, camera = 1;  ///< area density as generated from the light's side and from the camera's side
+  bool delta = false;                 ///< the path goes on through this vertex by a delta event
+};
+
+/// x_0 on the light .. x_k on the lens; at least two vertices.
+struct OraclePath {
+  std::vector<OracleVertex> vertices;
+  bool hittable = true;         ///< a ray from the camera's side can find x_0
+  long double nee = 1;          ///< density of next-event estimation for x_0, in the measure of vertices[0].light
+  long double light_paths = 1;  ///< light subpaths for each camera sample
+};
+
+/// Density of each strategy, s = 0 .. k light vertices and k + 1 - s >= 1 camera vertices; 0 where it cannot make the
+/// path. A light seen directly belongs to s = 0 alone.
+std::vector<long double> densities(const OraclePath& path);
+/// Weight of each strategy: density^exponent over the sum of all (Veach 1997, section 9.2).
+std::vector<long double> weights(const OraclePath& path, int exponent);
+
+}  // namespace ajar::kit

@@ -1,0 +1,209 @@
+// The same bytes with any number of threads, after a stop and after a checkpoint.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "ajar/core/error.h"
+#include "kit/stage.h"
+#include "measure.h"
+
+namespace ajar {
+namespace {
+
+using namespace kit;
+
+// All kinds of strategies, and more tiles than are traced at once: 4112 x 3 pixels are 257 tiles.
+Scene strip(bool wide) {
+  Scene scene = stage(40);
+  Material glass;
+  glass.kind = MaterialKind::dielectric;
+  add_sphere(scene, {0.3f, -0.5f, 0.3f}, 0.4f, add(scene, glass));
+  scene.filter = make_filter(FilterKind::mitchell);
+  if (wide) {
+    Camera& c = scene.camera;
+    c.width = 4112, c.height = 3, c.crop_width = 4112, c.crop_height = 3;
+  }
+  finish(scene);
+  return scene;
+}
+
+template <class T>
+bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+void expect_same_bytes(const RenderState& a, const RenderState& b) {
+  EXPECT_EQ(a.film.passes, b.film.passes);
+  EXPECT_EQ(a.film.chunks, b.film.chunks);
+  EXPECT_TRUE(same_bytes(a.film.camera_sum, b.film.camera_sum));
+  EXPECT_TRUE(same_bytes(a.film.splat_sum, b.film.splat_sum));
+  EXPECT_TRUE(same_bytes(a.film.square_sum, b.film.square_sum));
+  EXPECT_TRUE(same_bytes(a.film.camera, b.film.camera));
+  EXPECT_TRUE(same_bytes(a.film.splat, b.film.splat));
+  EXPECT_TRUE(same_bytes(develop(a.film).pixels, develop(b.film).pixels));
+  ASSERT_EQ(a.pyramid.layers.size(), b.pyramid.layers.size());
+  for (const auto& [st, layer] : a.pyramid.layers) {
+    ASSERT_TRUE(b.pyramid.layers.contains(st));
+    EXPECT_TRUE(same_bytes(layer.raw, b.pyramid.layers.at(st).raw));
+    EXPECT_TRUE(same_bytes(layer.weighted, b.pyramid.layers.at(st).weighted));
+  }
+  EXPECT_EQ(a.stats.counters.camera_rays, b.stats.counters.camera_rays);
+  EXPECT_EQ(a.stats.counters.light_rays, b.stats.counters.light_rays);
+  EXPECT_EQ(a.stats.counters.shadow_rays, b.stats.counters.shadow_rays);
+}
+
+RenderOptions options_of(const std::string& integrator, uint32_t spp, uint64_t seed = 5) {
+  RenderOptions o;
+  o.integrator = integrator;
+  o.spp = spp;
+  o.seed = seed;
+  return o;
+}
+
+bool always(const RenderState&) { return true; }
+
+struct File {
+  std::string path;
+  explicit File(const std::string& name)
+      : path((std::filesystem::temp_directory_path() / (name + std::to_string(getpid()))).string()) {}
+  ~File() { std::filesystem::remove(path); }
+};
+
+TEST(Determinism, ThreadsDoNotMatter) {
+  const Scene scene = strip(false);
+  const Accel accel(scene);
+  for (const std::string& integrator : integrator_names()) {
+    RenderOptions o = options_of(integrator, 3);
+    o.techniques = integrator == "bdpt";
+    o.threads = 1;
+    const RenderState one = rendered(scene, accel, o);
+    for (const int threads : {2, 7}) {
+      o.threads = threads;
+      SCOPED_TRACE(integrator);
+      expect_same_bytes(one, rendered(scene, accel, o));
+    }
+  }
+}
+
+TEST(Determinism, SeedsMatter) {
+  const Scene scene = strip(false);
+  const Accel accel(scene);
+  for (const std::string& integrator : integrator_names()) {
+    const RenderState a = rendered(scene, accel, options_of(integrator, 2, 1));
+    const RenderState b = rendered(scene, accel, options_of(integrator, 2, 2));
+    EXPECT_FALSE(same_bytes(develop(a.film).pixels, develop(b.film).pixels)) << integrator;
+  }
+}
+
+TEST(Determinism, GoingOnIsTheStraightRun) {
+  const Scene scene = strip(true);
+  const Accel accel(scene);
+  for (const std::string& integrator : integrator_names()) {
+    SCOPED_TRACE(integrator);
+    const RenderOptions o = options_of(integrator, 3);
+    const RenderState straight = rendered(scene, accel, o);
+    ASSERT_EQ(chunk_count(straight.film), 257u);
+    // Stops at each look: in the middle of a pass and at its end, in turns.
+    RenderState state = start_render(scene, o);
+    int stops = 0, amid = 0;
+    while (state.film.passes < o.spp) {
+      render(scene, accel, o, state, [](const RenderState&) { return false; });
+      ++stops;
+      amid += state.film.chunks != 0;
+    }
+    EXPECT_EQ(stops, 6);
+    EXPECT_EQ(amid, 3);
+    expect_same_bytes(straight, state);
+  }
+}
+
+TEST(Determinism, CheckpointAmidAPassIsTheStraightRun) {
+  const Scene scene = strip(true);
+  const Accel accel(scene);
+  for (const std::string& integrator : integrator_names()) {
+    SCOPED_TRACE(integrator);
+    RenderOptions o = options_of(integrator, 2);
+    o.techniques = integrator == "bdpt";
+    const RenderState straight = rendered(scene, accel, o);
+    const File file("ajar_checkpoint");
+    RenderState first = start_render(scene, o);
+    int looks = 0;
+    render(scene, accel, o, first, [&](const RenderState&) { return ++looks < 3; });
+    ASSERT_EQ(first.film.passes, 1u);
+    ASSERT_NE(first.film.chunks, 0u);
+    save_checkpoint(file.path, "key", first);
+    RenderState second = start_render(scene, o);
+    load_checkpoint(file.path, "key", second);
+    expect_same_bytes(first, second);
+    render(scene, accel, o, second, always);
+    expect_same_bytes(straight, second);
+    EXPECT_EQ(second.stats.rejected, 0u);
+  }
+}
+
+TEST(Determinism, DamagedOrForeignCheckpointsAreErrors) {
+  const Scene scene = strip(false);
+  const Accel accel(scene);
+  const RenderOptions o = options_of("bdpt", 1);
+  const File file("ajar_damaged");
+  save_checkpoint(file.path, "key", rendered(scene, accel, o));
+  const auto size = std::filesystem::file_size(file.path);
+  RenderState state = start_render(scene, o);
+  EXPECT_THROW(load_checkpoint(file.path, "other", state), Error);
+  EXPECT_THROW(load_checkpoint(file.path + "no", "key", state), Error);
+  RenderState camera_alone = start_render(scene, options_of("path", 1));
+  EXPECT_THROW(load_checkpoint(file.path, "key", camera_alone), Error);
+  for (const double part : {0.0, 0.001, 0.3, 0.9, 0.99999}) {
+    std::filesystem::resize_file(file.path, uint64_t(double(size) * part));
+    RenderState fresh = start_render(scene, o);
+    EXPECT_THROW(load_checkpoint(file.path, "key", fresh), Error) << part;
+  }
+}
+
+TEST(Determinism, UnknownIntegratorIsAnError) {
+  const Scene scene = strip(false);
+  EXPECT_THROW(start_render(scene, options_of("pth", 1)), Error);
+}
+
+TEST(Determinism, WeightedTechniquesAddUpToTheImage) {
+  const Scene scene = strip(false);  // its filter has negative lobes
+  const Accel accel(scene);
+  RenderOptions o = options_of("bdpt", 4);
+  o.techniques = true;
+  const RenderState state = rendered(scene, accel, o);
+  const Picture image = develop(state.film);
+  double worst = 0, brightest = 0;
+  for (size_t i = 0; i < image.pixels.size(); ++i) {
+    double sum = 0;
+    for (const auto& [st, layer] : state.pyramid.layers) sum += layer.weighted[i / 3][glm::length_t(i % 3)];
+    worst = std::max(worst, std::abs(sum / state.film.passes - double(image.pixels[i])));
+    brightest = std::max(brightest, double(image.pixels[i]));
+  }
+  EXPECT_LT(worst, 1e-5 * brightest);
+}
+
+TEST(Sampler, SequenceBeatsIndependentNumbers) {
+  Scene scene = stage(32);
+  finish(scene);
+  const Accel accel(scene);
+  for (const std::string integrator : {"path", "bdpt"}) {
+    RenderOptions o = options_of(integrator, 1024, 99);
+    o.max_depth = 2;
+    const Picture reference = develop(rendered(scene, accel, o).film);
+    double error[2];
+    for (const SamplerKind kind : {SamplerKind::sobol, SamplerKind::independent}) {
+      o.spp = 64, o.seed = 1, o.sampler = kind;
+      const Picture image = develop(rendered(scene, accel, o).film);
+      double sum = 0;
+      for (size_t i = 0; i < image.pixels.size(); ++i) sum += sqr(image.pixels[i] - reference.pixels[i]);
+      error[int(kind)] = sum;
+    }
+    EXPECT_LT(error[0], 0.6 * error[1]) << integrator;
+    RecordProperty(integrator + "_mse_ratio", std::to_string(error[0] / error[1]));
+  }
+}
+
+}  // namespace
+}  // namespace ajar

@@ -1,0 +1,252 @@
+// Next-event estimation: directions follow the density that is claimed for them, and estimates are right.
+#include <gtest/gtest.h>
+
+#include "ajar/core/warp.h"
+#include "ajar/scene/light.h"
+#include "kit/chisquare.h"
+#include "lights.h"
+
+namespace ajar {
+namespace {
+
+using kit::LitScene;
+using kit::placed;
+
+// All points of the light along a ray, found by brute force in double.
+std::vector<Surface> all_hits(const Scene& scene, const Vec3& x, const Vec3& w) {
+  std::vector<Surface> hits;
+  const Shape& shape = scene.shapes[scene.lights[0].shape];
+  const auto add = [&](const Hit& hit) { hits.push_back(make_surface(scene, hit, x, w)); };
+  Hit hit;
+  hit.shape = scene.lights[0].shape;
+  if (shape.kind == ShapeKind::mesh) {
+    const Mesh& mesh = scene.meshes[shape.mesh];
+    for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+      const glm::uvec3 t = mesh.triangles[i];
+      const glm::dvec3 p0(mesh.positions[t.x]), e1 = glm::dvec3(mesh.positions[t.y]) - p0,
+                                                e2 = glm::dvec3(mesh.positions[t.z]) - p0;
+      const glm::dvec3 s = glm::dvec3(x) - p0, p = glm::cross(glm::dvec3(w), e2), q = glm::cross(s, e1);
+      const double det = glm::dot(e1, p), b1 = glm::dot(s, p) / det, b2 = glm::dot(glm::dvec3(w), q) / det,
+                   at = glm::dot(e2, q) / det;
+      if (!(at > 0 && b1 >= 0 && b2 >= 0 && b1 + b2 <= 1)) continue;
+      hit.t = float(at), hit.prim = i, hit.bary = {float(b1), float(b2)};
+      add(hit);
+    }
+    return hits;
+  }
+  const glm::dvec3 o = kit::map(shape.to_object, x), d = glm::dmat4(shape.to_object) * glm::dvec4(w, 0);
+  const auto add_at = [&](double t) {
+    const glm::dvec3 q = o + t * d;
+    if (!(t > 0) || (shape.kind == ShapeKind::cylinder && (q.z < 0 || q.z > 1)) ||
+        (shape.kind == ShapeKind::disk && q.x * q.x + q.y * q.y > 1))
+      return;
+    const double turn = std::atan2(q.y, q.x) / (2 * std::numbers::pi), u = turn < 0 ? turn + 1 : turn;
+    hit.t = float(t);
+    hit.bary = shape.kind == ShapeKind::disk ? Vec2(float(std::sqrt(q.x * q.x + q.y * q.y)), float(u))
+               : shape.kind == ShapeKind::cylinder
+                   ? Vec2(float(u), float(q.z))
+                   : Vec2(float(u), float(std::acos(std::clamp(q.z, -1.0, 1.0)) / std::numbers::pi));
+    add(hit);
+  };
+  if (shape.kind == ShapeKind::disk) {
+    add_at(-o.z / d.z);
+    return hits;
+  }
+  const glm::dvec3 flat = shape.kind == ShapeKind::cylinder ? glm::dvec3(1, 1, 0) : glm::dvec3(1);
+  const double a = glm::dot(d * flat, d), b = glm::dot(o * flat, d), c = glm::dot(o * flat, o) - 1;
+  if (b * b < a * c) return hits;
+  add_at((-b - std::sqrt(b * b - a * c)) / a);
+  add_at((-b + std::sqrt(b * b - a * c)) / a);
+  return hits;
+}
+
+// Density of sample_direct in direction w: that of every shining point along it.
+double density(const Scene& scene, const Vec3& x, const Vec3& w) {
+  if (scene.lights[0].kind != LightKind::area) return pdf_direct(scene, light_point(scene, 0, w), x, w);
+  double sum = 0;
+  for (const Surface& s : all_hits(scene, x, w)) sum += pdf_direct(scene, light_point(scene, s), x, w);
+  return sum;
+}
+
+void expect_chi_square(const LitScene& lit, const Vec3& x, uint64_t seed) {
+  kit::ChiOptions o;
+  o.samples = 100'000;
+  o.rows = 16, o.columns = 32;
+  o.seed = seed;
+  const auto r = kit::chi_square_sphere(
+      [&](const Vec2& u, float) -> std::optional<Vec3> {
+        DirectSample d;
+        if (!sample_direct(lit.scene, 0, x, u, d)) return std::nullopt;
+        return d.wi;
+      },
+      [&](const Vec3& w) { return density(lit.scene, x, w); }, o);
+  EXPECT_TRUE(r.ok) << lit.name << " from " << x.x << " " << x.y << " " << x.z << ": " << r.message;
+}
+
+TEST(Direct, AreaLightsFollowTheirDensity) {
+  uint64_t seed = 1;
+  for (const LitScene& lit : kit::area_scenes())
+    for (const Vec3& x : kit::view_points()) expect_chi_square(lit, x, seed++);
+}
+
+TEST(Direct, InfiniteLightsFollowTheirDensity) {
+  uint64_t seed = 1;
+  for (const LitScene& lit : kit::infinite_scenes()) expect_chi_square(lit, Vec3(0), seed++);
+}
+
+// Samples agree with themselves: the density that pdf_direct gives for a sample is the sample's own.
+TEST(Direct, PdfOfASampleIsItsOwn) {
+  std::vector<LitScene> all = kit::area_scenes();
+  for (LitScene& lit : kit::infinite_scenes()) all.push_back(std::move(lit));
+  for (const LitScene& lit : all)
+    for (const Vec3& x : kit::view_points())
+      for (uint32_t i = 0; i < 300; ++i) {
+        DirectSample d;
+        if (!sample_direct(lit.scene, 0, x, kit::random2(i, 7), d)) continue;
+        ASSERT_NEAR(length2(d.wi), 1, 1e-5f);
+        const float pdf = pdf_direct(lit.scene, d.point, x, d.wi);
+        ASSERT_NEAR(pdf / d.pdf, 1, d.point.infinite ? 0.02f : 1e-3f) << lit.name;
+        if (d.point.infinite) continue;
+        ASSERT_NEAR(glm::distance(d.point.p, x) / d.distance, 1, 1e-4f) << lit.name;
+        ASSERT_LT(glm::distance(glm::normalize(d.point.p - x), d.wi), 1e-4f) << lit.name;
+        ASSERT_GT(glm::dot(d.point.n, -d.wi), 0);
+        ASSERT_GT(d.point.error, 0);
+      }
+}
+
+// Irradiance on a plane at x with normal n, unoccluded.
+Rgb irradiance(const Scene& scene, const Vec3& x, const Vec3& n, uint32_t samples = 1 << 14) {
+  glm::dvec3 sum(0);
+  for (uint32_t i = 0; i < samples; ++i) {
+    DirectSample d;
+    const Vec2 u = make_sampler(SamplerKind::sobol, 1, Side::camera, 0, i).next2();
+    if (!sample_direct(scene, 0, x, u, d)) continue;
+    sum += glm::dvec3(d.radiance * (std::max(glm::dot(n, d.wi), 0.0f) / d.pdf));
+  }
+  return sum / double(samples);
+}
+
+// Lambert's formula for a polygon that lies above the horizon (Arvo 1995, equation 2.8).
+double polygon_factor(const std::vector<glm::dvec3>& corners, const glm::dvec3& x, const glm::dvec3& n) {
+  double sum = 0;
+  for (size_t i = 0; i < corners.size(); ++i) {
+    const glm::dvec3 a = glm::normalize(corners[i] - x), b = glm::normalize(corners[(i + 1) % corners.size()] - x);
+    sum += std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0)) * glm::dot(glm::normalize(glm::cross(a, b)), n);
+  }
+  return std::abs(sum) / 2;
+}
+
+TEST(Direct, PolygonGivesLambertsIrradiance) {
+  const Mat4 down = glm::translate(Mat4(1), Vec3(0.3f, 0.2f, 2)) * glm::rotate(Mat4(1), pi, Vec3(1, 0, 0));
+  const Mesh rect = kit::rectangle(down);
+  const LitScene lit = kit::area_scene("rectangle", ShapeKind::mesh, Mat4(1), false, &rect);
+  for (const Vec3& x : {Vec3(0, 0, 0), Vec3(5, 1, 0.5f), Vec3(0.2f, 0.3f, 1.8f), Vec3(0.5f, 0.1f, 1.99f)}) {
+    std::vector<glm::dvec3> corners;
+    for (const Vec3& p : rect.positions) corners.emplace_back(p);
+    const Rgb e = irradiance(lit.scene, x, {0, 0, 1});
+    EXPECT_NEAR(e.y / (2 * polygon_factor(corners, x, {0, 0, 1})), 1, 4e-3) << x.x << " " << x.z;
+    EXPECT_NEAR(e.z / e.x, 3, 1e-4);
+    EXPECT_EQ(irradiance(lit.scene, x + Vec3(0, 0, 4), {0, 0, -1}, 64), Rgb(0));  // from behind: dark
+  }
+}
+
+TEST(Direct, SphereGivesItsIrradiance) {
+  for (const float distance : {1.001f, 1.5f, 10.0f, 1e4f, 1e6f}) {
+    const LitScene lit = kit::area_scene("sphere", ShapeKind::sphere, placed(1, Vec3(0.25f), {0, 0, 0.25f * distance}));
+    const Rgb e = irradiance(lit.scene, Vec3(0), {0, 0, 1}, 1 << 12);
+    EXPECT_NEAR(e.x / (pi / (double(distance) * distance)), 1, 2e-3) << distance;
+  }
+  // Inside a sphere that shines inwards every irradiance is pi L.
+  const LitScene inside = kit::area_scene("sphere", ShapeKind::sphere, placed(1, Vec3(2), {0, 0, 0}), true);
+  for (const Vec3& x : {Vec3(0), Vec3(1, 0.5f, -1), Vec3(0, 0, 1.9f)})
+    EXPECT_NEAR(irradiance(inside.scene, x, glm::normalize(Vec3(1, 2, 3)), 1 << 16).x / pi, 1, 0.02) << x.z;
+  const LitScene outwards = kit::area_scene("sphere", ShapeKind::sphere, placed(1, Vec3(2), {0, 0, 0}));
+  EXPECT_EQ(irradiance(outwards.scene, {0.5f, 0, 0}, {0, 0, 1}, 256), Rgb(0));
+}
+
+TEST(Direct, DiskGivesItsIrradiance) {
+  const Mat4 down = glm::translate(Mat4(1), Vec3(0, 0, 2)) * glm::rotate(Mat4(1), pi, Vec3(1, 0, 0)) *
+                    glm::scale(Mat4(1), Vec3(1.5f));
+  const LitScene lit = kit::area_scene("disk", ShapeKind::disk, down);
+  EXPECT_NEAR(irradiance(lit.scene, Vec3(0), {0, 0, 1}).x, pi * 2.25 / (2.25 + 4), 5e-3);
+}
+
+TEST(Direct, InfiniteLightsGiveTheirIrradiance) {
+  for (const LitScene& lit : kit::infinite_scenes()) {
+    const Vec3 n = glm::normalize(Vec3(0.3f, 1, 0.2f));
+    glm::dvec3 exact(0);
+    constexpr int g = 1200;
+    for (int i = 0; i < g * g; ++i) {
+      const Vec3 w = to_sphere({(float(i % g) + 0.5f) / g, (float(i / g) + 0.5f) / g});
+      exact += glm::dvec3(environment(lit.scene, 0, w)) * double(std::max(glm::dot(n, w), 0.0f)) /
+               (double(g) * g * sphere_pdf);
+    }
+    const Rgb e = irradiance(lit.scene, Vec3(3, 4, 5), n, 1 << 15);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(e[c] / exact[c], 1, 5e-3) << lit.name;
+  }
+}
+
+Scene delta_scene(const Light& light) {
+  Scene scene;
+  kit::add_mesh(scene, kit::rectangle(Mat4(1)));
+  kit::add_light(scene, light);
+  finish(scene);
+  return scene;
+}
+
+TEST(Direct, PointSpotAndDirectional) {
+  Light light;
+  light.kind = LightKind::point;
+  light.position = {0, 0, 3};
+  light.radiance = Slot(Rgb(9, 18, 27));
+  DirectSample d;
+  ASSERT_TRUE(sample_direct(delta_scene(light), 0, Vec3(0), {0.5f, 0.5f}, d));
+  EXPECT_EQ(d.radiance, Rgb(1, 2, 3));
+  EXPECT_EQ(d.pdf, 1);
+  EXPECT_TRUE(d.point.delta_position);
+  EXPECT_FALSE(sample_direct(delta_scene(light), 0, light.position, {0.5f, 0.5f}, d));
+
+  light.kind = LightKind::spot;
+  light.direction = {0, 0, -1};
+  light.cos_cutoff = std::cos(0.6f), light.cos_beam = std::cos(0.2f);
+  const Scene spot = delta_scene(light);
+  for (const float angle : {0.0f, 0.1f, 0.3f, 0.4f, 0.59f}) {
+    ASSERT_TRUE(sample_direct(spot, 0, {3 * std::tan(angle), 0, 0}, {0.5f, 0.5f}, d)) << angle;
+    const float share = angle < 0.2f ? 1 : (0.6f - angle) / 0.4f;
+    EXPECT_NEAR(d.radiance.x, share * sqr(std::cos(angle)), 1e-4) << angle;
+  }
+  EXPECT_FALSE(sample_direct(spot, 0, {3 * std::tan(0.61f), 0, 0}, {0.5f, 0.5f}, d));
+  EXPECT_FALSE(sample_direct(spot, 0, {0, 0, 6}, {0.5f, 0.5f}, d));
+
+  light.kind = LightKind::directional;
+  light.direction = glm::normalize(Vec3(1, 0, -1));
+  const Scene sun = delta_scene(light);
+  ASSERT_TRUE(sample_direct(sun, 0, {5, 6, 7}, {0.5f, 0.5f}, d));
+  EXPECT_EQ(d.radiance, Rgb(9, 18, 27));
+  EXPECT_EQ(d.wi, -light.direction);
+  EXPECT_TRUE(d.point.infinite && d.point.delta_direction);
+  EXPECT_EQ(environment(sun, 0, d.wi), Rgb(0));
+  EXPECT_TRUE(sun.infinite_lights.empty());
+}
+
+// Dark, flat and singular lights give nothing rather than NaN.
+TEST(Direct, NothingComesOfNothing) {
+  DirectSample d;
+  const LitScene black = kit::map_scene("black", Mat4(1), kit::float_image(4, 2, [](int, int) { return 0.0f; }));
+  EXPECT_EQ(power(black.scene, 0), 0);
+  EXPECT_FALSE(sample_direct(black.scene, 0, Vec3(0), {0.3f, 0.4f}, d));
+  EXPECT_EQ(pdf_direct(black.scene, light_point(black.scene, 0, {0, 1, 0}), Vec3(0), {0, 1, 0}), 0);
+  Mesh flat = kit::rectangle(glm::scale(Mat4(1), Vec3(1, 0, 1)));
+  const LitScene line = kit::area_scene("line", ShapeKind::mesh, Mat4(1), false, &flat);
+  EXPECT_FALSE(sample_direct(line.scene, 0, {1, 1, 1}, {0.3f, 0.4f}, d));
+  const LitScene sphere = kit::area_scene("sphere", ShapeKind::sphere, placed(1, Vec3(1), {0, 0, 0}));
+  for (uint32_t i = 0; i < 1000; ++i) {
+    const Vec3 x = to_sphere(kit::random2(i, 1));  // on the surface itself
+    if (sample_direct(sphere.scene, 0, x, kit::random2(i, 2), d)) {
+      ASSERT_TRUE(d.pdf > 0 && d.pdf < infinity && is_finite(d.wi));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ajar

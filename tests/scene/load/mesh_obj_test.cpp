@@ -1,0 +1,192 @@
+#include <gtest/gtest.h>
+
+#include "ajar/core/error.h"
+#include "kit/files.h"
+#include "mesh_samples.h"
+
+namespace ajar {
+namespace {
+
+Mesh obj(const std::string& text, const MeshOptions& options = {.face_normals = true}) {
+  Mesh mesh = parse_obj(text, "a.obj", options);
+  EXPECT_EQ(kit::unsound(mesh), "");
+  return mesh;
+}
+
+std::string error_of(const std::string& text) {
+  try {
+    parse_obj(text, "a.obj", {});
+  } catch (const Error& e) {
+    EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos);
+    return e.what();
+  }
+  return "no error";
+}
+
+const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+TEST(MeshObj, reads_a_triangle_with_everything) {
+  const Mesh m =
+      obj("v 0 0 0\nv 2 0 0\nv 0 3 0\nvt 0 0\nvt 1 0 5\nvt 0 1\nvn 0 0 4\nf 1/1/1 2/2/1 3/3/1\n", MeshOptions());
+  ASSERT_EQ(m.triangles.size(), 1u);
+  EXPECT_EQ(m.triangles[0], glm::uvec3(0, 1, 2));
+  EXPECT_EQ(m.positions[2], Vec3(0, 3, 0));
+  EXPECT_EQ(m.uvs[1], Vec2(1, 0));
+  EXPECT_EQ(m.normals[1], Vec3(0, 0, 1));
+}
+
+TEST(MeshObj, shares_vertices_with_equal_corners_only) {
+  const Mesh m = obj(three + "v 1 1 0\nvt 0 0\nvt 1 1\nf 1/1 2/1 3/1\nf 2/1 4/1 3/2\n");
+  EXPECT_EQ(m.positions.size(), 5u);  // v3 with vt1 and with vt2
+  EXPECT_EQ(m.triangles[1].x, m.triangles[0].y);
+  EXPECT_NE(m.triangles[1].z, m.triangles[0].z);
+}
+
+TEST(MeshObj, many_distinct_corners_at_one_position) {
+  std::string text = three;
+  for (int i = 0; i < 20000; ++i) text += "vt 0." + std::to_string(i) + " 0\nf 1/-1 2/1 3/1\n";
+  EXPECT_EQ(obj(text).positions.size(), 20002u);
+}
+
+TEST(MeshObj, reads_numbers_in_every_spelling) {
+  const Mesh m = obj("v 1e-007 +2 -.5\nv 1.E+1 1e-400 -0\nv 3.4e38 00012 1e0\nf 1 2 3");
+  EXPECT_EQ(m.positions[0], Vec3(1e-7f, 2, -0.5f));
+  EXPECT_EQ(m.positions[1], Vec3(10, 0, 0));
+  EXPECT_EQ(m.positions[2], Vec3(3.4e38f, 12, 1));
+}
+
+TEST(MeshObj, blanks_comments_line_ends_and_continuations) {
+  const Mesh m = obj(
+      "\xef\xbb\xbf# comment \\\r\n\r\n  v\t0 0 0  \r\nv 1 0 0# tail\r\nv 0 \\\r\n  1 \\ \r\n 0\r\n\tf 1 2\\\n 3 \r\n");
+  ASSERT_EQ(m.triangles.size(), 1u);
+  EXPECT_EQ(m.positions[2], Vec3(0, 1, 0));
+  EXPECT_EQ(obj("v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\r").triangles.size(), 1u);  // CR alone
+}
+
+TEST(MeshObj, passes_over_what_is_not_geometry) {
+  const Mesh m =
+      obj("mtllib a b.mtl\no name\ng a b\ns 1\nusemtl x\nvp 1 2\nl 1 2\np 1\nfoo\n" + three + "g\ns off\nf 1 2 3\n");
+  EXPECT_EQ(m.triangles.size(), 1u);
+}
+
+TEST(MeshObj, negative_indices_count_back_from_where_they_stand) {
+  const Mesh m = obj(three + "f -3 -2 -1\nv 5 5 5\nv 6 6 6\nv 7 7 8\nf -3 -2 -1\n");
+  EXPECT_EQ(m.positions[m.triangles[0].x], Vec3(0, 0, 0));
+  EXPECT_EQ(m.positions[m.triangles[1].x], Vec3(5, 5, 5));
+}
+
+TEST(MeshObj, indices_may_run_ahead) { EXPECT_EQ(obj("f 1 2 3\n" + three).positions[1], Vec3(1, 0, 0)); }
+
+TEST(MeshObj, corners_without_vt_or_vn) {
+  const Mesh m = obj(three + "vt 0.5 0.25\nvn 0 0 1\nf 1/1/1 2//1 3/1\nf 1 2/ 3/1/\n", MeshOptions());
+  EXPECT_EQ(m.uvs[m.triangles[0].x], Vec2(0.5f, 0.25f));
+  EXPECT_EQ(m.uvs[m.triangles[0].y], Vec2(0, 0));
+  for (const Vec3& n : m.normals) EXPECT_EQ(n, Vec3(0, 0, 1));
+}
+
+TEST(MeshObj, polygons_become_triangles) {
+  const Mesh m = obj("v 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 3 0\nv 0 2 0\nf 1 2 3 4 5\n");
+  ASSERT_EQ(m.triangles.size(), 3u);
+  double area = 0;
+  for (size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(kit::face_normal(m, i), Vec3(0, 0, 1));
+    const glm::uvec3 t = m.triangles[i];
+    area += 0.5 * glm::length(glm::cross(m.positions[t.y] - m.positions[t.x], m.positions[t.z] - m.positions[t.x]));
+  }
+  EXPECT_DOUBLE_EQ(area, 5);
+}
+
+TEST(MeshObj, concave_quads_are_cut_inside) {
+  for (const char* face : {"f 1 2 3 4", "f 2 3 4 1", "f 3 4 1 2", "f 4 1 2 3"}) {
+    const Mesh m = obj(std::string("v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\n") + face);  // reflex at v3
+    ASSERT_EQ(m.triangles.size(), 2u);
+    EXPECT_EQ(kit::face_normal(m, 0), Vec3(0, 0, 1)) << face;
+    EXPECT_EQ(kit::face_normal(m, 1), Vec3(0, 0, 1)) << face;
+  }
+}
+
+TEST(MeshObj, faces_without_area) {
+  EXPECT_EQ(obj(three + "f 1 2\nf 1\nf\n").triangles.size(), 0u);
+  const Mesh m = obj(three + "f 1 1 2\nf 1 2 2 1\n", MeshOptions());  // stay, with normals that are unit
+  EXPECT_EQ(m.triangles.size(), 3u);
+  EXPECT_EQ(m.normals[0], Vec3(0, 0, 1));
+}
+
+TEST(MeshObj, colours) {
+  const Mesh m = obj("v 0 0 0\nv 1 0 0 0.5 0.25 1\nv 0 1 0 1 0 0 1\nv 0 0 1 0.7\nf 1 2 3\nf 1 2 4");
+  ASSERT_EQ(m.colors.size(), 4u);
+  EXPECT_EQ(m.colors[0], Rgb(1));
+  EXPECT_EQ(m.colors[1], Rgb(0.5f, 0.25f, 1));
+  EXPECT_EQ(m.colors[2], Rgb(0, 0, 1));  // x y z w r g b
+  EXPECT_TRUE(obj(three + "f 1 2 3").colors.empty());
+}
+
+TEST(MeshObj, flip_v) {
+  const std::string text = three + "vt 0.25 0.25\nf 1/1 2/1 3/1\n";
+  EXPECT_EQ(obj(text).uvs[0], Vec2(0.25f, 0.25f));
+  EXPECT_EQ(obj(text, {.flip_v = true}).uvs[0], Vec2(0.25f, 0.75f));
+}
+
+TEST(MeshObj, normals_of_the_file) {
+  const std::string text =
+      three + "vn 0 3 4\nvn 0 0 0\nvn nan 0 1\nvn 1e200 0 1e200\nf 1//1 2//2 3//3\nf 1//4 2//2 3//3";
+  const Mesh m = obj(text, MeshOptions());
+  EXPECT_EQ(m.normals[0], Vec3(0, 0.6f, 0.8f));
+  EXPECT_EQ(m.normals[1], Vec3(0, 0, 1));  // zero: that of the faces
+  EXPECT_EQ(m.normals[2], Vec3(0, 0, 1));  // not a number
+  EXPECT_NEAR(m.normals[3].x, std::sqrt(0.5f), 1e-6f);
+  EXPECT_TRUE(obj(text).normals.empty());  // face_normals
+}
+
+TEST(MeshObj, empty_files_are_empty_meshes) {
+  EXPECT_TRUE(obj("").triangles.empty());
+  EXPECT_TRUE(obj("# nothing", MeshOptions()).positions.empty());
+}
+
+TEST(MeshObj, errors_name_file_line_and_culprit) {
+  EXPECT_EQ(error_of("v 1 2\n"), "a.obj:1: v has 2 coordinates; it needs x y z");
+  EXPECT_EQ(error_of("\n\nv 1,5 2 3\n"), "a.obj:3: \"1,5\" is not a number");
+  EXPECT_EQ(error_of("v 1 2 \\\n z\n"), "a.obj:2: \"z\" is not a number");
+  EXPECT_NE(error_of("v 0 0 inf").find("a.obj:1: a coordinate of v is not finite"), std::string::npos);
+  EXPECT_NE(error_of("v 0 0 1e39").find("not finite"), std::string::npos);
+  EXPECT_NE(error_of("vt nan 0").find("a.obj:1: a coordinate of vt is not finite"), std::string::npos);
+  EXPECT_NE(error_of("vt").find("a.obj:1: vt has no"), std::string::npos);
+  EXPECT_NE(error_of("vn 1 2").find("a.obj:1: vn has 2"), std::string::npos);
+  EXPECT_EQ(error_of(three + "\nf 1 2 4\n"), "a.obj:5: f names v 4 of 3");
+  EXPECT_EQ(error_of(three + "f 1/1 2/1 3/1\n"), "a.obj:4: f names vt 1 of 0");
+  EXPECT_EQ(error_of(three + "f 1//9 2//1 3//1\n"), "a.obj:4: f names vn 9 of 0");
+  EXPECT_EQ(error_of(three + "f 1 2 0\n"), "a.obj:4: \"0\": there is no such v; 3 so far");
+  EXPECT_EQ(error_of(three + "f 1 2 -4\n"), "a.obj:4: \"-4\": there is no such v; 3 so far");
+  for (const char* f : {"f a b c", "f 1 2 3x", "f 1.5 2 3", "f 1 2 3/1/1/1", "f 1 2 99999999999999999999", "f 1 2 ++3"})
+    EXPECT_NE(error_of(three + f).find("a.obj:4: \""), std::string::npos) << f;
+}
+
+TEST(MeshObj, missing_files) {
+  EXPECT_THROW(read_obj("/no/such/file.obj", {}), Error);
+  EXPECT_THROW(read_obj("/", {}), Error);
+}
+
+TEST(MeshObj, a_large_mesh_survives) {
+  const Mesh sphere = make_sphere(224, 224);
+  std::string text;
+  for (const Vec3& p : sphere.positions) {
+    char line[128];
+    std::snprintf(line, sizeof line, "v %.9g %.9g %.9g\n", p.x, p.y, p.z);
+    text += line;
+  }
+  for (const glm::uvec3& t : sphere.triangles)
+    text += "f " + std::to_string(t.x + 1) + " " + std::to_string(t.y + 1) + " " + std::to_string(t.z + 1) + "\n";
+  const Mesh m = obj(text);
+  ASSERT_EQ(m.triangles.size(), sphere.triangles.size());
+  for (size_t i = 0; i < m.triangles.size(); ++i)
+    for (int k = 0; k < 3; ++k) ASSERT_EQ(m.positions[m.triangles[i][k]], sphere.positions[sphere.triangles[i][k]]);
+}
+
+TEST(MeshObj, reads_the_scenes_of_the_sources) {
+  const Mesh m = read_obj(kit::source_path("scenes/ajar/models/chair.obj"), {});
+  EXPECT_EQ(kit::unsound(m), "");
+  EXPECT_GT(m.triangles.size(), 10u);
+}
+
+}  // namespace
+}  // namespace ajar
