@@ -44,7 +44,7 @@ def main():
     ply('pot-handle', vessels.pot_handle())
     ply('twigs', vessels.twigs(12))
     for make in (vessels.tumbler, vessels.teapot, vessels.pot, vessels.bowl, vessels.apple, vessels.stalk, vessels.vase,
-                 vessels.lamp):
+                 vessels.candlestick, vessels.candle, vessels.lamp):
         ply(make.__name__, make())
     paint.wood(os.path.join(textures, 'floor.png'), (512, 512), 1, (0.33, 0.20, 0.11), (0.72, 0.52, 0.33), 24,
                planks=10)

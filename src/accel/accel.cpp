@@ -196,7 +196,6 @@ bool Accel::intersect(const Vec3& o, const Vec3& d, float t_min, float t_max, Hi
   hit.shape = r.hit.geomID;
   hit.prim = r.hit.primID;
   hit.instance = r.hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? none : r.hit.instID[0] - first_instance_;
-  hit.ng = {r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z};
   hit.bary = {r.hit.u, r.hit.v};
   return true;
 }

@@ -55,10 +55,9 @@ bool join_escape(const Scene& scene, uint32_t light, const Subpath& camera, cons
 
 bool join_light(const Scene& scene, Sampler& sampler, const Subpath& camera, int t, double light_paths,
                 Candidate& out) {
-  Vec2 u_choice = sampler.next2();
+  float pick;
+  const uint32_t light = choose_light(scene, sampler, pick);
   const Vec2 u = sampler.next2();
-  const uint32_t light = scene.light_choice.sample(u_choice.x);
-  const float pick = scene.light_choice.pdf(light);
   const Vertex& c = camera[t - 1];
   DirectSample d;
   if (!sample_direct(scene, light, c.p, u, d)) return false;
@@ -81,7 +80,8 @@ bool join_light(const Scene& scene, Sampler& sampler, const Subpath& camera, int
   if (point.infinite) {
     out.o = from, out.d = d.wi, out.t_max = infinity;
   } else {
-    set_segment(out, from, point.delta_position ? point.p : offset(point.p, point.n, point.error, -d.wi));
+    set_segment(out, from,
+                point.delta_position ? point.p : shadow_end(point.p, point.n, point.error, -d.wi, d.distance));
   }
   return true;
 }
@@ -93,7 +93,8 @@ bool join_vertices(const Subpath& light, int s, double share, const Subpath& cam
   const Vec3 between = c.p - a.p;
   const float d2 = length2(between);
   if (!(d2 > 0)) return false;
-  const Vec3 w = between / std::sqrt(d2);
+  const float distance = std::sqrt(d2);
+  const Vec3 w = between / distance;
   const GuideEval ec = evaluate(c.guide, -w, Mode::radiance);
   if (is_black(ec.f_cos)) return false;
   const GuideEval ea = evaluate(a.guide, w, Mode::importance);
@@ -102,7 +103,7 @@ bool join_vertices(const Subpath& light, int s, double share, const Subpath& cam
   out.light = end_at(light, s, ec.pdf * std::abs(glm::dot(a.ng, w)) / d2, ea.pdf_reverse);
   out.camera = end_at(camera, t, ea.pdf * std::abs(glm::dot(c.ng, w)) / d2, ec.pdf_reverse);
   out.shares = {share, light_paths};
-  set_segment(out, offset(c.p, c.ng, c.error, -w), offset(a.p, a.ng, a.error, w));
+  set_segment(out, offset(c.p, c.ng, c.error, -w), shadow_end(a.p, a.ng, a.error, w, distance));
   return true;
 }
 

@@ -43,10 +43,9 @@ void start_camera(const Scene& scene, const WalkOptions& options, const Vec2& ra
 bool start_light(const Scene& scene, Sampler& sampler, Subpath& subpath, Walk& walk) {
   subpath.n = 0;
   if (scene.lights.empty()) return false;
-  Vec2 u_choice = sampler.next2();
+  float pick;
+  const uint32_t light = choose_light(scene, sampler, pick);
   const Vec2 u_position = sampler.next2(), u_direction = sampler.next2();
-  const uint32_t light = scene.light_choice.sample(u_choice.x);
-  const float pick = scene.light_choice.pdf(light);
   EmissionSample e;
   if (!sample_emission(scene, light, u_position, u_direction, e) || is_black(e.radiance)) return false;
   const LightPoint& point = e.point;

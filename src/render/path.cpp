@@ -38,10 +38,9 @@ Rgb hit_sky(const Scene& scene, Heuristic h, const Vec3& from, const Vec3& d, do
 // Next-event estimation: s = 1.
 Rgb direct(const Job& job, const Guide& guide, const Surface& at, Sampler& sampler, Scratch& scratch) {
   const Scene& scene = *job.scene;
-  Vec2 u_choice = sampler.next2();
+  float pick;
+  const uint32_t light = choose_light(scene, sampler, pick);
   const Vec2 u = sampler.next2();
-  const uint32_t light = scene.light_choice.sample(u_choice.x);
-  const float pick = scene.light_choice.pdf(light);
   DirectSample d;
   if (!sample_direct(scene, light, at.p, u, d)) return Rgb(0);
   const GuideEval e = evaluate(guide, d.wi, Mode::radiance);
@@ -51,7 +50,8 @@ Rgb direct(const Job& job, const Guide& guide, const Surface& at, Sampler& sampl
   if (d.point.infinite) {
     if (job.accel->occluded(o, d.wi, infinity)) return Rgb(0);
   } else {
-    const Vec3 end = d.point.delta_position ? d.point.p : offset(d.point.p, d.point.n, d.point.error, -d.wi);
+    const LightPoint& l = d.point;
+    const Vec3 end = l.delta_position ? l.p : shadow_end(l.p, l.n, l.error, -d.wi, d.distance);
     if (job.accel->occluded(o, end - o, 1)) return Rgb(0);
   }
   const bool alone = d.point.delta_position || d.point.delta_direction;

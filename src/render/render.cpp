@@ -48,6 +48,7 @@ void weigh_by_filter(std::vector<Strategy>& strategies, size_t from, float weigh
 void trace_chunk(const Job& job, const Integrator& integrator, Film& film, uint32_t chunk, Scratch& scratch,
                  uint64_t& rejected_at) {
   const int x0 = int(chunk) % tiles_x(film) * tile, y0 = int(chunk) / tiles_x(film) * tile;
+  const bool has_lens = job.scene->camera.kind == CameraKind::thinlens;
   rejected_at = none64;
   for (int y = y0; y < std::min(y0 + tile, film.height); ++y)
     for (int x = x0; x < std::min(x0 + tile, film.width); ++x) {
@@ -57,7 +58,7 @@ void trace_chunk(const Job& job, const Integrator& integrator, Film& film, uint3
       float sign = 1;
       const Vec2 centre(float(film.x0 + x) + 0.5f, float(film.y0 + y) + 0.5f);
       const Vec2 offset_in_pixel = ajar::sample(film.filter, sampler.next2(), sign);
-      const Vec2 lens = sampler.next2();
+      const Vec2 lens = has_lens ? sampler.next2() : Vec2(0);
       const uint64_t before = scratch.rejected;
       const size_t first = scratch.strategies ? scratch.strategies->size() : 0;
       Rgb value = integrator.trace(job, sample, centre + offset_in_pixel, lens, sampler, scratch);

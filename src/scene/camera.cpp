@@ -39,10 +39,11 @@ float orthographic_factor(const Camera& c) {
   return pixel_density(c) * std::sqrt(length2(Vec3(c.to_world[2]))) / volume(c.to_world);
 }
 
+// From camera-space o along q, whose depth is 1.
 CameraRay make_ray(const Camera& c, const Vec3& o, const Vec3& q) {
   const Vec3 d = map_vector(c.to_world, q);
   const float per_depth = std::sqrt(length2(d));
-  return {map_point(c.to_world, o), d / per_depth, c.near_clip * per_depth, c.far_clip * per_depth};
+  return {map_point(c.to_world, o), d / per_depth, (c.near_clip - o.z) * per_depth, (c.far_clip - o.z) * per_depth};
 }
 
 void set_matrices(Camera& c, const Mat4& to_world) {
@@ -54,16 +55,16 @@ void set_matrices(Camera& c, const Mat4& to_world) {
 
 CameraRay generate(const Camera& c, const Vec2& raster, const Vec2& lens) {
   const Vec2 at = to_plane(c, raster) * c.plane;
-  if (c.kind == CameraKind::orthographic) return make_ray(c, Vec3(at, 0), Vec3(0, 0, 1));
+  if (c.kind == CameraKind::orthographic) return make_ray(c, Vec3(at, c.near_clip), Vec3(0, 0, 1));
   const Vec3 o = lens_point(c, lens);
   return make_ray(c, o, Vec3(at - Vec2(o) / c.focus, 1));
 }
 
 bool connect(const Camera& c, const Vec3& x, const Vec2& lens, float margin, CameraConnection& out) {
   const Vec3 local = map_point(c.to_camera, x);
-  if (!(local.z > 0 && local.z >= c.near_clip && local.z <= c.far_clip)) return false;
   const bool parallel = c.kind == CameraKind::orthographic;
-  const Vec3 o = parallel ? Vec3(Vec2(local), 0) : lens_point(c, lens);
+  if (!((parallel || local.z > 0) && local.z >= c.near_clip && local.z <= c.far_clip)) return false;
+  const Vec3 o = parallel ? Vec3(Vec2(local), c.near_clip) : lens_point(c, lens);
   const Vec2 at = parallel ? Vec2(local) : Vec2(o) / c.focus + (Vec2(local) - Vec2(o)) / local.z;
   out.raster = to_raster(c, at / c.plane);
   const Vec2 low = Vec2(float(c.crop_x), float(c.crop_y)) - margin;

@@ -39,7 +39,13 @@ float density(const Distribution2D& table, const Vec2& texels, float sin_theta) 
 // Tent over (-1, 1).
 float tent(float u) { return u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 - 2 * u); }
 
-float sin_of_row(int y, int height) { return float(std::sin((double(y) + 0.5) / double(height) * std::numbers::pi)); }
+// Integral of sin(theta) against the tent of a row of texels; the first and last row reach flat to the poles.
+double solid_of_row(int y, int height) {
+  const double h = std::numbers::pi / height;
+  if (height == 1) return 2;
+  if (y == 0 || y == height - 1) return 1 - (std::sin(1.5 * h) - std::sin(0.5 * h)) / h;
+  return std::sin((y + 0.5) * h) * 2 * (1 - std::cos(h)) / h;
+}
 
 }  // namespace
 
@@ -72,16 +78,8 @@ Vec3 sample_environment(const Environment& e, Vec2 u, float& pdf) {
   return {std::sin(phi) * sin_theta, std::cos(theta), -std::cos(phi) * sin_theta};
 }
 
-Rgb environment_total(const Scene& scene, const Environment& e) {
-  const Image& image = scene.images[e.image];
-  glm::dvec3 sum(0);
-  for (int y = 0; y < image.height; ++y) {
-    glm::dvec3 row(0);
-    for (int x = 0; x < image.width; ++x) row += glm::dvec3(texel(image, x, y));
-    sum += row * double(sin_of_row(y, image.height));
-  }
-  const double per_texel = 2 * std::numbers::pi * std::numbers::pi / (double(image.width) * double(image.height));
-  return Rgb(sum * (per_texel * double(e.scale)));
+double environment_total(const Environment& e) {
+  return e.table.rows.sum * (2 * std::numbers::pi / e.table.width) * double(e.scale);
 }
 
 Environment make_environment(const Scene& scene, uint32_t id, float scale) {
@@ -89,11 +87,11 @@ Environment make_environment(const Scene& scene, uint32_t id, float scale) {
   std::vector<float> weights(size_t(image.width) * size_t(image.height));
   std::vector<int> bad(size_t(image.height), -1);
   tbb::parallel_for(0, image.height, [&](int y) {
-    const float sine = sin_of_row(y, image.height);
+    const float solid = float(solid_of_row(y, image.height));
     for (int x = 0; x < image.width; ++x) {
       const Rgb c = texel(image, x, y);
       if (!(c.x >= 0 && c.y >= 0 && c.z >= 0 && is_finite(c))) bad[size_t(y)] = x;
-      weights[size_t(y) * size_t(image.width) + size_t(x)] = luminance(c) * sine;
+      weights[size_t(y) * size_t(image.width) + size_t(x)] = luminance(c) * solid;
     }
   });
   for (int y = 0; y < image.height; ++y)

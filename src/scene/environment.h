@@ -12,7 +12,7 @@ Rgb environment_radiance(const Scene& scene, const Environment& e, const Vec3& w
 float environment_pdf(const Environment& e, const Vec3& w);
 /// Draws a unit local direction; pdf 0 where none was found.
 Vec3 sample_environment(const Environment& e, Vec2 u, float& pdf);
-/// Integral of the radiance over all directions.
-Rgb environment_total(const Scene& scene, const Environment& e);
+/// Integral of the luminance over all local directions.
+double environment_total(const Environment& e);
 
 }  // namespace ajar

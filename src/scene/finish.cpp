@@ -4,7 +4,7 @@
 #include <tbb/parallel_reduce.h>
 
 #include "ajar/core/error.h"
-#include "ajar/scene/geometry.h"
+#include "solid.h"
 
 namespace ajar {
 namespace {
@@ -112,8 +112,12 @@ void set_areas(Mesh& mesh) {
 void prepare_light(Scene& scene, uint32_t id) {
   Light& light = scene.lights[id];
   light.textured = light.radiance.texture != none;
-  if (light.kind == LightKind::area && is_mesh(scene.shapes[light.shape]))
-    set_areas(scene.meshes[scene.shapes[light.shape].mesh]);
+  light.rectangle = {};
+  if (light.kind == LightKind::area && is_mesh(scene.shapes[light.shape])) {
+    Mesh& mesh = scene.meshes[scene.shapes[light.shape].mesh];
+    set_areas(mesh);
+    if (!light.textured) light.rectangle = rectangle_of(mesh);
+  }
   if (light.kind == LightKind::constant || light.kind == LightKind::envmap) scene.infinite_lights.push_back(id);
   if (light.kind != LightKind::envmap && light.kind != LightKind::spot) return;
   const glm::dmat3 linear(light.to_world);

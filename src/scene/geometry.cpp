@@ -39,13 +39,16 @@ Corners corners(const Mesh& mesh, const glm::uvec3& t) {
   return {{mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]}};
 }
 
-// Twice the area times the normal; edges scaled first where the product would underflow.
+float error_of(const Corners& c) {
+  return error_scale * std::max(max_abs(c.p[0]), std::max(max_abs(c.p[1]), max_abs(c.p[2]))) + least_error;
+}
+
+// Unit normal. In double: in single precision the normal of a sliver tilts so far that rays along it start on the wrong
+// side.
 Vec3 normal_of(const Corners& c) {
-  const Vec3 a = c.p[1] - c.p[0], b = c.p[2] - c.p[0];
-  const Vec3 n = glm::cross(a, b);
-  if (length2(n) > 1e-30f) return n;
-  const float m = std::max(max_abs(a), max_abs(b));
-  return m > 0 ? glm::cross(a / m, b / m) : n;
+  const glm::dvec3 p(c.p[0]), n = glm::cross(glm::dvec3(c.p[1]) - p, glm::dvec3(c.p[2]) - p);
+  const double l2 = glm::dot(n, n);
+  return l2 > 0 ? Vec3(n * (1 / std::sqrt(l2))) : Vec3(0, 0, 1);
 }
 
 template <class T>
@@ -57,8 +60,8 @@ T interpolate(const std::vector<T>& values, const glm::uvec3& t, const Vec2& bar
 void set_point(const Mesh& mesh, const glm::uvec3& t, const Corners& c, Surface& s) {
   const Vec2 b = s.bary;
   s.p = c.p[0] * (1 - b.x - b.y) + c.p[1] * b.x + c.p[2] * b.y;
-  s.error = error_scale * std::max(max_abs(c.p[0]), std::max(max_abs(c.p[1]), max_abs(c.p[2]))) + least_error;
-  s.ng = unit(normal_of(c), Vec3(0, 0, 1));
+  s.error = error_of(c);
+  s.ng = normal_of(c);
   s.uv = mesh.uvs.empty() ? b : interpolate(mesh.uvs, t, b);
 }
 
@@ -260,6 +263,8 @@ Vec2 sphere_uv(const Shape& sphere, const Vec3& p) {
   const float turn = std::atan2(q.y, q.x) / (2 * pi);
   return {turn < 0 ? turn + 1 : turn, std::atan2(std::sqrt(q.x * q.x + q.y * q.y), q.z) * inv_pi};
 }
+
+float triangle_error(const Mesh& mesh, uint32_t triangle) { return error_of(corners(mesh, mesh.triangles[triangle])); }
 
 float position_error(const Shape& quadric, const Vec3& p) {
   return quadric_error(quadric, p) + error_scale * max_abs(Vec3(quadric.to_world[3]));

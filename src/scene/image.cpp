@@ -68,7 +68,7 @@ template <class T>
 std::vector<T> read_all(const std::string& path, OIIO::ImageInput& input, const OIIO::ImageSpec& spec,
                         OIIO::TypeDesc type) {
   std::vector<T> values(size_t(spec.width) * size_t(spec.height) * size_t(spec.nchannels));
-  if (!input.read_image(0, 0, 0, spec.nchannels, type, values.data()))
+  if (!input.read_image(0, 0, 0, spec.nchannels, type, values.data()) || input.has_error())
     throw Error(fmt::format("{}: the image is damaged or cut off ({})", path, input.geterror()));
   return values;
 }

@@ -185,10 +185,11 @@ bool sample_direct(const Scene& scene, uint32_t id, const Vec3& x, const Vec2& u
   const Light& light = scene.lights[id];
   if (is_infinite(light.kind)) return sample_direct_infinite(scene, id, u, out);
   if (light.kind != LightKind::area) return sample_direct_delta(scene, id, x, out);
-  Surface at;
-  if (!sample_shape(scene, light.shape, light.textured, x, u, at, out.wi, out.distance, out.pdf)) return false;
-  out.radiance = radiance_at(scene, light, at);
-  out.point = point_of(at, id);
+  ShapeSample sample;
+  if (!sample_shape(scene, light, x, u, sample)) return false;
+  out.wi = sample.wi, out.distance = sample.distance, out.pdf = sample.pdf;
+  out.radiance = radiance_at(scene, light, sample.at);
+  out.point = point_of(sample.at, id);
   return !is_black(out.radiance);
 }
 
@@ -196,7 +197,7 @@ float pdf_direct(const Scene& scene, const LightPoint& point, const Vec3& x, con
   const Light& light = scene.lights[point.light];
   if (point.delta_position || point.delta_direction) return 0;
   if (point.infinite) return environment_pdf_at(scene, light, wi);
-  return shape_pdf(scene, light.shape, point, x, wi);
+  return shape_pdf(scene, light, point, x, wi);
 }
 
 bool sample_emission(const Scene& scene, uint32_t id, const Vec2& u_position, const Vec2& u_direction,
@@ -265,7 +266,7 @@ float power(const Scene& scene, uint32_t id) {
       watts = sphere * disk * luminance(light.radiance.value);
       break;
     case LightKind::envmap:
-      watts = disk * luminance(environment_total(scene, scene.environments[light.environment]));
+      watts = disk * environment_total(scene.environments[light.environment]);
       break;
     case LightKind::directional:
       watts = disk * luminance(light.radiance.value);

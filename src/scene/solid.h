@@ -1,4 +1,4 @@
-// Enters: an emitting shape and the point that it is seen from.
+// Enters: an area light and the point that it is seen from.
 // Leaves: points on the shape with their solid-angle density there. Private to the room.
 #pragma once
 
@@ -6,10 +6,18 @@
 
 namespace ajar {
 
-/// A point of the shape whose emitting side faces x; false where this sample gives none. uv: whether at.uv is needed.
-bool sample_shape(const Scene& scene, uint32_t shape, bool uv, const Vec3& x, const Vec2& u, Surface& at, Vec3& wi,
-                  float& distance, float& pdf);
+struct ShapeSample {
+  Surface at;  ///< p, error, ng, shape, prim; uv (and bary) where the light is textured
+  Vec3 wi{0};  ///< from x to the point, unit
+  float distance = 0;
+  float pdf = 0;  ///< per solid angle at x
+};
+
+/// A point of an area light whose emitting side faces x; false where this sample gives none.
+bool sample_shape(const Scene& scene, const Light& light, const Vec3& x, const Vec2& u, ShapeSample& out);
 /// Density per solid angle at x with which sample_shape finds this point, which lies along unit wi.
-float shape_pdf(const Scene& scene, uint32_t shape, const LightPoint& point, const Vec3& x, const Vec3& wi);
+float shape_pdf(const Scene& scene, const Light& light, const LightPoint& point, const Vec3& x, const Vec3& wi);
+/// The rectangle that a mesh is, valid only if it is one.
+Rectangle rectangle_of(const Mesh& mesh);
 
 }  // namespace ajar

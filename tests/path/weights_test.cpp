@@ -214,7 +214,8 @@ void compare_all(const Tracer& tracer, Traced& light, Traced& camera, const Vec2
   for (const uint32_t l : scene.infinite_lights)
     if (join_escape(scene, l, camera.path, camera.walk, c)) {
       const int t = camera.path.n;
-      tally.compare(scene, c, lit(light_point(scene, l, camera.walk.d), camera.walk.d, camera, t, camera.path[t - 1].delta), 0);
+      tally.compare(scene, c,
+                    lit(light_point(scene, l, camera.walk.d), camera.walk.d, camera, t, camera.path[t - 1].delta), 0);
     }
 }
 

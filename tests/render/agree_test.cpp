@@ -1,6 +1,6 @@
-// path = bdpt = light tracing by z-test, one small scene for each feature. What an integrator cannot sample is left out:
-// light tracing makes no light seen over mirrors and glass alone and no environment seen directly; path tracing finds no
-// caustic of a light without extent.
+// path = bdpt = light tracing by z-test, one small scene for each feature. What an integrator cannot sample is left
+// out: light tracing makes no light seen over mirrors and glass alone and no environment seen directly; path tracing
+// finds no caustic of a light without extent.
 #include <gtest/gtest.h>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -230,7 +230,8 @@ Scene with_filter(FilterKind kind) {
 Scene with_camera(CameraKind kind) {
   Scene scene = stage();
   Camera& c = scene.camera;
-  if (kind == CameraKind::orthographic) set_orthographic(c, glm::scale(look_at({0.2f, 0.1f, 3}, {0, 0, 0}), Vec3(0.9f)));
+  if (kind == CameraKind::orthographic)
+    set_orthographic(c, glm::scale(look_at({0.2f, 0.1f, 3}, {0, 0, 0}), Vec3(0.9f)));
   if (kind == CameraKind::thinlens) c.kind = kind, c.aperture = 0.3f, c.focus = 4;
   c.principal = {0.03f, -0.05f};
   return finished(std::move(scene));
@@ -317,7 +318,9 @@ const Feature features[] = {
     {"normalmap", [] { return with_bump_map(MaterialKind::normalmap, 0); }},
     {"textures", with_textures},
     {"sphere_light",
-     [] { return lit_by_shape(ShapeKind::sphere, glm::scale(glm::translate(Mat4(1), Vec3(0.2f, 0.5f, 0)), Vec3(0.2f))); }},
+     [] {
+       return lit_by_shape(ShapeKind::sphere, glm::scale(glm::translate(Mat4(1), Vec3(0.2f, 0.5f, 0)), Vec3(0.2f)));
+     }},
     {"disk_light",
      [] {
        const Mat4 m = glm::rotate(glm::translate(Mat4(1), Vec3(0.2f, 0.6f, 0)), 1.9f, Vec3(1, 0, 0));
@@ -339,10 +342,22 @@ const Feature features[] = {
        emit(scene, add_mesh(scene, globe({0.3f, 0, 0}, 0.25f, 5, 0.2f), add_diffuse(scene, Rgb(0.5f))), Rgb(2, 3, 4));
        return finished(std::move(scene));
      }},
-    {"point", [] { return lit_by(LightKind::point, {0, -1, 0}); }},
-    {"spot", [] { return lit_by(LightKind::spot, {-0.2f, -1, -0.5f}); }},
-    {"directional", [] { return lit_by(LightKind::directional, {-0.4f, -1, -0.6f}); }},
-    {"constant", [] { return lit_by(LightKind::constant, {0, -1, 0}); }},
+    {"point",
+     [] {
+       return lit_by(LightKind::point, {0, -1, 0});
+     }},
+    {"spot",
+     [] {
+       return lit_by(LightKind::spot, {-0.2f, -1, -0.5f});
+     }},
+    {"directional",
+     [] {
+       return lit_by(LightKind::directional, {-0.4f, -1, -0.6f});
+     }},
+    {"constant",
+     [] {
+       return lit_by(LightKind::constant, {0, -1, 0});
+     }},
     {"envmap", with_envmap},
     {"envmap_seen",
      [] {

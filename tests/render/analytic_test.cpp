@@ -121,7 +121,8 @@ TEST(Lambert, TriangleOverAPlane) {
   Picture expected = filled(scene, Rgb(0));
   std::vector<glm::dvec3> polygon(mesh.positions.begin(), mesh.positions.end());
   for (int i = 0; i < 24 * 24 * 16; ++i) {  // 4 x 4 points of each pixel
-    const Vec2 raster(float(i / 16 % 24) + (float(i % 4) + 0.5f) / 4, float(i / 16 / 24) + (float(i / 4 % 4) + 0.5f) / 4);
+    const Vec2 raster(float(i / 16 % 24) + (float(i % 4) + 0.5f) / 4,
+                      float(i / 16 / 24) + (float(i / 4 % 4) + 0.5f) / 4);
     const CameraRay ray = generate(scene.camera, raster, Vec2(0.5f));
     const Vec3 x = ray.o - ray.d * (ray.o.y / ray.d.y);
     const double e = 5 * lambert(polygon, x, {0, 1, 0}) / std::numbers::pi / 16;

@@ -159,6 +159,22 @@ TEST(Camera, RefusesWhatItDoesNotSee) {
   EXPECT_NEAR(ray.t_max * ray.d.z, 10, 1e-4f);
 }
 
+TEST(Camera, OrthographicStartsAtItsNearPlane) {
+  Camera c;
+  set_orthographic(c, glm::scale(Mat4(1), Vec3(4, 4, 2)));
+  c.near_clip = -3, c.far_clip = 5;
+  const CameraRay ray = generate(c, {384, 288}, {0, 0});
+  EXPECT_LT(glm::distance(ray.o, Vec3(0, 0, -6)), 1e-5f);
+  EXPECT_EQ(ray.t_min, 0);
+  EXPECT_NEAR(ray.t_max, 16, 1e-5f);
+  CameraConnection k;
+  ASSERT_TRUE(connect(c, {-2, 0, -5}, {0, 0}, 0, k));
+  EXPECT_NEAR(k.raster.x, 0.75f * 768, 1e-3f);  // x runs to the left
+  EXPECT_NEAR(k.distance, 1, 1e-5f);
+  EXPECT_NEAR(k.factor, 768 * 576 / (8.0f * 6), 0.1f);
+  EXPECT_FALSE(connect(c, {0, 0, -6.1f}, {0, 0}, 0, k));
+}
+
 TEST(Camera, ThinLensIsSharpInFocusAlone) {
   Camera c;
   c.kind = CameraKind::thinlens;

@@ -39,6 +39,16 @@ struct Walk {
   Rgb survival{1};          ///< throughput since the start, for roulette
 };
 
+/// One of the scene's lights (there is at least one), and the probability of its choice. A single light costs no number.
+inline uint32_t choose_light(const Scene& scene, Sampler& sampler, float& pick) {
+  pick = 1;
+  if (scene.lights.size() == 1) return 0;
+  float u = sampler.next1();
+  const uint32_t light = scene.light_choice.sample(u);
+  pick = scene.light_choice.pdf(light);
+  return light;
+}
+
 /// Starts at the camera: vertex 0 and the ray through a raster position. factor of the hit is set by step.
 void start_camera(const Scene& scene, const WalkOptions& options, const Vec2& raster, const Vec2& lens,
                   Subpath& subpath, Walk& walk);
@@ -49,6 +59,12 @@ bool step(const Scene& scene, const Accel& accel, const WalkOptions& options, Su
           Surface& surface);
 /// Samples the direction in which the subpath goes on from its last vertex; false when it ends there.
 bool scatter(const WalkOptions& options, Sampler& sampler, Subpath& subpath, Walk& walk);
+
+/// Where a shadow ray of this length and unit direction d (away from the surface) ends, off the surface that it goes to:
+/// the ray tracer's rounding of the distance grows with the length.
+inline Vec3 shadow_end(const Vec3& p, const Vec3& ng, float error, const Vec3& d, float length) {
+  return offset(p, ng, std::max(error, 0x1p-20f * length), d);
+}
 
 /// Density of next-event estimation from x over that of emission for the same point of a light, along unit wi (x to
 /// light).

@@ -19,7 +19,7 @@ struct Camera {
   Vec2 principal{0, 0};  ///< principal point offset, fraction of the full width and height; moves the image left and up
   float aperture = 0;    ///< thinlens: radius
   float focus = 1;       ///< thinlens: distance to the plane in focus
-  float near_clip = 0, far_clip = infinity;  ///< camera-space depth
+  float near_clip = 0, far_clip = infinity;  ///< camera-space depth; near may be negative when orthographic
 };
 
 struct CameraRay {
@@ -32,7 +32,7 @@ struct CameraRay {
 /// area density of camera rays at a surface point is factor * |cos(ng, w)| per sample and pixel, and what a light
 /// vertex gives the film is beta * f * |cos(ns, w)| * factor.
 struct CameraConnection {
-  Vec3 p{0};  ///< on the lens; orthographic: on the plane of depth 0
+  Vec3 p{0};  ///< on the lens; orthographic: on the near clip plane
   Vec3 w{0};  ///< from the point to the lens, unit
   float distance = 0;
   Vec2 raster{0};

@@ -9,6 +9,12 @@ namespace ajar {
 
 enum class LightKind : uint8_t { area, constant, envmap, point, spot, directional };
 
+/// A mesh light that is one rectangle: corner + a x + b y, 0 <= a, b <= 1, shines to the side of cross(x, y).
+struct Rectangle {
+  Vec3 corner{0}, x{0}, y{0};
+  bool valid = false;
+};
+
 struct Light {
   LightKind kind = LightKind::area;
   Slot radiance{1.0f};  ///< area, constant: radiance [W/(m^2 sr)]; directional: irradiance on a perpendicular plane;
@@ -23,6 +29,7 @@ struct Light {
   float cos_cutoff = 0;         ///< spot: nothing outside
   float cos_beam = 1;           ///< spot: full intensity inside; between the two it falls linearly with the angle
   bool textured = false;        ///< radiance has a texture; made by finish
+  Rectangle rectangle;          ///< area: untextured rectangles; made by finish
 };
 
 /// A point of a light. For infinite lights (constant, envmap, directional) p is not a place: n is the direction *of
@@ -31,7 +38,7 @@ struct LightPoint {
   Vec3 p{0};
   float error = 0;
   Vec3 n{0};   ///< area: unit normal of the emitting side; infinite: direction of travel; point, spot: zero
-  Vec2 uv{0};  ///< area: of the shape (from sample_direct on spheres only when the light is textured)
+  Vec2 uv{0};  ///< area: of the shape; sample_direct gives it for textured lights alone
   uint32_t light = none;
   uint32_t prim = 0;
   bool infinite = false;
@@ -81,7 +88,8 @@ LightPoint light_point(const Scene& scene, const Surface& at);
 Rgb environment(const Scene& scene, uint32_t light, const Vec3& w);
 /// The light point of an infinite light that an escaping ray of direction w found.
 LightPoint light_point(const Scene& scene, uint32_t light, const Vec3& w);
-/// Emitted power [W] used to choose among lights; infinite lights with the scene's bounding sphere.
+/// Emitted power [W] (luminance) used to choose among lights; infinite lights with the scene's bounding sphere. Never 0
+/// for a light that emits somewhere.
 float power(const Scene& scene, uint32_t light);
 
 /// Image map over the sphere, bilinear. In the light's own space y is up and the direction (sin phi sin theta, cos

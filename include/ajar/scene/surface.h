@@ -14,7 +14,6 @@ struct Hit {
   uint32_t shape = none;     ///< index into Scene::shapes
   uint32_t prim = 0;         ///< triangle of a mesh; 0 for quadrics
   uint32_t instance = none;  ///< index into Scene::instances
-  Vec3 ng{0};    ///< mesh: geometric normal in world space (in the group's space through an instance), not normalised
   Vec2 bary{0};  ///< mesh: weights of the triangle's 2nd and 3rd vertex; quadrics: their (u, v)
 };
 

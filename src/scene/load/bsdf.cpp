@@ -47,8 +47,9 @@ void distribution(Params& p, Material& m) {
 Slot roughness(Params& p, const char* name, const Slot& otherwise) {
   const Slot s = slot(p, {name}, otherwise, Colour::ratio);
   if (s.texture == none && !(luminance(s.value) > 0))
-    fail(p.loader, p.node, fmt::format("{} should be greater than 0; {} is the plugin without roughness", name,
-                                       p.node.type.starts_with("rough") ? p.node.type.substr(5) : p.node.type));
+    fail(p.loader, p.node,
+         fmt::format("{} should be greater than 0; {} is the plugin without roughness", name,
+                     p.node.type.starts_with("rough") ? p.node.type.substr(5) : p.node.type));
   return s;
 }
 
@@ -124,9 +125,9 @@ void phong(Params& p, Material& m) {
 void principled(Params& p, Material& m) {
   m.reflectance = main_slot(p, {"base_color"}, 0.5f, Colour::reflectance);
   const std::pair<const char*, Slot*> slots[] = {
-      {"roughness", &m.roughness}, {"anisotropic", &m.anisotropic}, {"metallic", &m.metallic},
-      {"spec_trans", &m.spec_trans}, {"spec_tint", &m.spec_tint}, {"sheen", &m.sheen},
-      {"sheen_tint", &m.sheen_tint}, {"clearcoat", &m.clearcoat}, {"clearcoat_gloss", &m.clearcoat_gloss},
+      {"roughness", &m.roughness},   {"anisotropic", &m.anisotropic}, {"metallic", &m.metallic},
+      {"spec_trans", &m.spec_trans}, {"spec_tint", &m.spec_tint},     {"sheen", &m.sheen},
+      {"sheen_tint", &m.sheen_tint}, {"clearcoat", &m.clearcoat},     {"clearcoat_gloss", &m.clearcoat_gloss},
       {"flatness", &m.flatness}};
   for (const auto& [name, target] : slots) *target = slot(p, {name}, *target, Colour::ratio);
   m.ior = float(number(p, "eta", 1.5));
@@ -152,9 +153,10 @@ void take_nested(Params& p, Material& m, size_t low, size_t high) {
     list.emplace_back(p.node.children[i].name, &meant);
   }
   if (list.size() < low || list.size() > high)
-    fail(p.loader, p.node, fmt::format("needs {} nested bsdf{}, has {}",
-                                       low == high ? fmt::format("{}", low) : fmt::format("{} to {}", low, high),
-                                       high == 1 ? "" : "s", list.size()));
+    fail(p.loader, p.node,
+         fmt::format("needs {} nested bsdf{}, has {}",
+                     low == high ? fmt::format("{}", low) : fmt::format("{} to {}", low, high), high == 1 ? "" : "s",
+                     list.size()));
   if (named) std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   for (size_t i = 0; i < list.size(); ++i) m.nested[i] = load_bsdf(p.loader, *list[i].second);
 }
@@ -225,20 +227,35 @@ void bumpmap(Params& p, Material& m) {
   take_nested(p, m, 1, 1);
 }
 
-void normalmap(Params& p, Material& m) {
-  if (has(p, "filename")) {  // without a texture around it
-    Texture t;
-    t.flip_v = false;
-    t.image = load_image_file(p.loader, p.node, file(p, "filename"), true, 0);
-    const float tiles = float(positive(p, "tiles", 1));
-    t.to_uv[0][0] = t.to_uv[1][1] = tiles;
-    if (boolean(p, "use_slopes", false)) fail(p.loader, p.node, "a map of slopes is not supported, one of normals is");
-    m.map.texture = uint32_t(p.loader.scene.textures.size());
-    p.loader.scene.textures.push_back(t);
-  } else {
-    m.map = main_slot(p, {"normalmap", "map"}, Slot(), Colour::ratio);
-    if (m.map.texture == none) fail(p.loader, p.node, "needs <texture name=\"normalmap\" ...>");
+// Slopes of a height along u and v as the colours of a normal map.
+void slopes_to_normals(Image& image) {
+  if (image.channels != 3 || image.floats.empty()) return;
+  for (size_t i = 0; i + 2 < image.floats.size(); i += 3) {
+    const Vec3 n = glm::normalize(Vec3(-image.floats[i], -image.floats[i + 1], 1));
+    for (int c = 0; c < 3; ++c) image.floats[i + size_t(c)] = n[c] * 0.5f + 0.5f;
   }
+}
+
+// A normal map named by its file, without a texture around it.
+Slot normals_of_file(Params& p) {
+  Texture t;
+  t.flip_v = false;
+  t.image = load_image_file(p.loader, p.node, file(p, "filename"), true, 0);
+  t.to_uv[0][0] = t.to_uv[1][1] = float(positive(p, "tiles", 1));
+  if (boolean(p, "use_slopes", false)) {
+    std::vector<Image>& images = p.loader.scene.images;
+    images.push_back(Image(images[t.image]));
+    slopes_to_normals(images.back());
+    t.image = uint32_t(images.size() - 1);
+  }
+  Slot slot;
+  slot.texture = add_texture(p.loader, p.node, std::move(t));
+  return slot;
+}
+
+void normalmap(Params& p, Material& m) {
+  m.map = has(p, "filename") ? normals_of_file(p) : main_slot(p, {"normalmap", "map"}, Slot(), Colour::ratio);
+  if (m.map.texture == none) fail(p.loader, p.node, "needs <texture name=\"normalmap\" ...>");
   take_nested(p, m, 1, 1);
 }
 
@@ -275,17 +292,33 @@ uint32_t stand_in(Loader& loader, const Node& node) {
   unsupported(loader, node, "unknown bsdf; supported: " + known,
               inner.empty() ? "grey diffuse in its place" : "what is nested in it in its place");
   if (!inner.empty()) return load_bsdf(loader, *inner.front());
-  loader.scene.materials.emplace_back();
-  return uint32_t(loader.scene.materials.size() - 1);
+  return add_material(loader, node, {});
 }
 
 }  // namespace
+
+uint32_t add_material(Loader& loader, const Node& node, const Material& material) {
+  int size = 1;
+  for (const uint32_t nested : material.nested)
+    if (nested != none) size += loader.material_sizes[nested];
+  if (size > max_tree) fail(loader, node, fmt::format("is made of more than {} bsdfs", max_tree));
+  const uint32_t index = uint32_t(loader.scene.materials.size());
+  loader.material_sizes.push_back(size);
+  loader.scene.materials.push_back(material);
+  const std::string problem = material_problem(loader.scene, index);
+  if (problem.empty()) return index;
+  unsupported(loader, node, problem, "the first of them in its place");
+  loader.scene.materials.pop_back();
+  loader.material_sizes.pop_back();
+  return material.nested[0] == none ? add_material(loader, node, {}) : material.nested[0];
+}
 
 uint32_t load_bsdf(Loader& loader, const Node& node) {
   const auto found = loader.bsdfs.find(&node);
   if (found != loader.bsdfs.end()) return found->second;
   const Open open(loader, node);
-  const auto entry = std::find_if(std::begin(entries), std::end(entries), [&](const Entry& e) { return node.type == e.type; });
+  const auto entry =
+      std::find_if(std::begin(entries), std::end(entries), [&](const Entry& e) { return node.type == e.type; });
   uint32_t index;
   if (entry == std::end(entries)) {
     index = stand_in(loader, node);
@@ -296,10 +329,7 @@ uint32_t load_bsdf(Loader& loader, const Node& node) {
     entry->read(p, m);
     finish(p, {"specular_sampling_weight", "specular_sampling", "specular_sampling_rate", "clearcoat_sampling_rate",
                "diffuse_reflectance_sampling_rate", "spec_trans_sampling_rate", "sample_visible", "id"});
-    index = uint32_t(loader.scene.materials.size());
-    loader.scene.materials.push_back(std::move(m));
-    if (const std::string problem = material_problem(loader.scene, index); !problem.empty())
-      fail(loader, node, problem);
+    index = add_material(loader, node, m);
   }
   loader.bsdfs.emplace(&node, index);
   return index;

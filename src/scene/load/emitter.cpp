@@ -59,8 +59,7 @@ void envmap(Params& p) {
   const std::string path = file(p, "filename");
   const double scale = number(p, "scale", 1);
   if (scale < 0) fail(p.loader, p.node, "scale should not be negative");
-  const uint32_t image =
-      load_image_file(p.loader, p.node, path, boolean(p, "raw", false), number(p, "gamma", 0));
+  const uint32_t image = load_image_file(p.loader, p.node, path, boolean(p, "raw", false), number(p, "gamma", 0));
   light.to_world = orientation(regular_to_world(p));
   light.environment = uint32_t(p.loader.scene.environments.size());
   p.loader.scene.environments.push_back(make_environment(p.loader.scene, image, float(scale)));
@@ -107,8 +106,8 @@ struct Entry {
   const char* type;
   void (*read)(Params&);
 };
-constexpr Entry entries[] = {{"constant", constant}, {"envmap", envmap},           {"point", point},
-                             {"spot", spot},         {"directional", directional}};
+constexpr Entry entries[] = {
+    {"constant", constant}, {"envmap", envmap}, {"point", point}, {"spot", spot}, {"directional", directional}};
 
 }  // namespace
 
@@ -122,7 +121,8 @@ void load_emitter(Loader& loader, const Node& node, uint32_t shape) {
   if (node.type == "area") {
     area(p, shape);
   } else {
-    const auto entry = std::find_if(std::begin(entries), std::end(entries), [&](const Entry& e) { return node.type == e.type; });
+    const auto entry =
+        std::find_if(std::begin(entries), std::end(entries), [&](const Entry& e) { return node.type == e.type; });
     if (entry == std::end(entries)) {
       unsupported(loader, node, fmt::format("unknown emitter; {}", supported), "left out");
       return;

@@ -16,8 +16,9 @@ void collect_ids(Loader& loader, const Node& node) {
     if (!child.id.empty() && child.tag != "ref") {
       const auto [known, added] = loader.ids.emplace(child.id, &child);
       if (!added)
-        fail(loader, child, fmt::format("the id is taken already at {}:{}",
-                                        loader.document.files[known->second->file], known->second->line));
+        fail(loader, child,
+             fmt::format("the id is taken already at {}:{}", loader.document.files[known->second->file],
+                         known->second->line));
     }
     collect_ids(loader, child);
   }
@@ -69,6 +70,7 @@ void load_child(Loader& loader, const Node& node, bool& has_sensor, bool& has_in
 Scene load(const std::string& text, const std::string& folder, const std::string& name, const LoadOptions& options) {
   const Document document = read_document(text, folder, name, options.defines);
   Loader loader{document, options.lenient};
+  loader.scene.notes = document.notes;
   collect_ids(loader, document.root);
   count_meshes(loader, document.root);
   bool has_sensor = false, has_integrator = false;

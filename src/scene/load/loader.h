@@ -19,8 +19,8 @@ namespace ajar {
 using DMat4 = glm::dmat4;
 using DVec3 = glm::dvec3;
 
-/// How numbers become RGB. reflectance: spectra under D65, so that a flat one is grey; at most 1. ratio: the same without
-/// a limit (indices of refraction, roughness). emission: spectra as light, unbounded.
+/// How numbers become RGB. reflectance: spectra under D65, so that a flat one is grey; at most 1. ratio: the same
+/// without a limit (indices of refraction, roughness). emission: spectra as light, unbounded.
 enum class Colour { reflectance, ratio, emission };
 
 struct Loader {
@@ -28,14 +28,15 @@ struct Loader {
   bool lenient = false;
   Scene scene;
   std::unordered_map<std::string, const Node*> ids;
-  std::unordered_map<const Node*, uint32_t> bsdfs, groups;            ///< read already
-  std::map<std::pair<const Node*, Colour>, uint32_t> textures;        ///< the same, by what they stand for
-  std::vector<const Node*> open;                                      ///< being read: a ref to one of them is a cycle
-  std::map<std::string, uint32_t> images;                             ///< by path and decoding
-  std::map<std::string, int> mesh_uses;                               ///< shapes that name a file
-  std::map<std::string, Mesh> meshes;                                 ///< parsed files that more than one shape names
-  std::set<std::string> said;                                         ///< notes, each once
-  uint32_t grey = none, black = none;                                 ///< materials of shapes without a bsdf
+  std::unordered_map<const Node*, uint32_t> bsdfs, groups;      ///< read already
+  std::map<std::pair<const Node*, Colour>, uint32_t> textures;  ///< the same, by what they stand for
+  std::vector<const Node*> open;                                ///< being read: a ref to one of them is a cycle
+  std::map<std::string, uint32_t> images;                       ///< by path and decoding
+  std::map<std::string, int> mesh_uses;                         ///< shapes that name a file
+  std::map<std::string, Mesh> meshes;                           ///< parsed files that more than one shape names
+  std::set<std::string> said;                                   ///< notes, each once
+  std::vector<int> texture_sizes, material_sizes;               ///< elements of each, with all that is nested
+  uint32_t grey = none, black = none;                           ///< materials of shapes without a bsdf
 };
 
 /// Throws Error "file:line: <element>: text".
@@ -85,6 +86,8 @@ bool has(Params& params, const char* name);
 double number(Params& params, const char* name, double otherwise);
 double positive(Params& params, const char* name, double otherwise);
 int integer(Params& params, const char* name, int otherwise, int low, int high);
+/// A whole number that asks for something Ajar need not do: numbers beyond measure become large ones.
+int hint(Params& params, const char* name, int otherwise);
 bool boolean(Params& params, const char* name, bool otherwise);
 std::string text(Params& params, const char* name, const std::string& otherwise);
 /// One of a few words, in any case; an Error lists them.
@@ -117,9 +120,14 @@ Slot slot_of(Loader& loader, const Node& node, Colour kind);
 Rgb colour(Params& params, const char* name, const Rgb& otherwise, Colour kind);
 /// Index into Scene::textures; kind says what the numbers in it stand for.
 uint32_t load_texture(Loader& loader, const Node& node, Colour kind);
-/// Index into Scene::images; the same file decoded in the same way is read once. channel: empty, or r, g, b, a.
-uint32_t load_image_file(Loader& loader, const Node& node, const std::string& path, bool raw, double gamma,
-                         const std::string& channel = {});
+/// Index into Scene::images; the same file decoded in the same way is read once.
+uint32_t load_image_file(Loader& loader, const Node& node, const std::string& path, bool raw, double gamma);
+
+// Nested elements may be named again and again by <ref>; evaluating them follows every name, so their number is
+// limited.
+inline constexpr int max_tree = 64;
+uint32_t add_texture(Loader& loader, const Node& node, Texture&& texture);
+uint32_t add_material(Loader& loader, const Node& node, const Material& material);
 
 /// RGB of wavelength [nm] and value pairs: linear between them, zero outside.
 Rgb rgb_of_list(std::vector<std::pair<double, double>> list, Colour kind);

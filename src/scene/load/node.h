@@ -1,5 +1,6 @@
 // Enters: the text of a scene file and of the files it includes.
-// Leaves: one tree of elements with one spelling of every name, parameters put in, and the place where each was written.
+// Leaves: one tree of elements with one spelling of every name, parameters put in, and the place where each was
+// written.
 #pragma once
 
 #include <cstdint>
@@ -19,11 +20,12 @@ struct Node {
 };
 
 struct Document {
-  Node root;                                  ///< <scene>, included files and all
-  std::vector<std::string> files;             ///< as they stand in messages
-  std::vector<std::string> folders;           ///< where relative names are looked for, in this order
-  std::map<std::string, std::string> aliases; ///< <alias>: new name to id
-  bool old = false;                           ///< version 0.x: a few defaults differ
+  Node root;                                   ///< <scene>, included files and all
+  std::vector<std::string> files;              ///< as they stand in messages
+  std::vector<std::string> folders;            ///< where relative names are looked for, in this order
+  std::map<std::string, std::string> aliases;  ///< <alias>: new name to id
+  std::vector<std::string> notes;
+  bool old = false;  ///< version 0.x: a few defaults differ
 };
 
 /// Reads a scene. name stands in messages, folder resolves relative names. Throws Error.

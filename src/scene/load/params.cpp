@@ -135,6 +135,11 @@ int integer(Params& params, const char* name, int otherwise, int low, int high) 
   return int(x);
 }
 
+int hint(Params& params, const char* name, int otherwise) {
+  const double limit = 1 << 30, x = number(params, name, otherwise);
+  return int(std::clamp(x, -1.0, limit));
+}
+
 bool boolean(Params& params, const char* name, bool otherwise) {
   const Node* node = find(params, {name});
   if (node == nullptr) return otherwise;
@@ -188,12 +193,12 @@ void finish(Params& params, std::initializer_list<const char*> harmless) {
   for (size_t i = 0; i < params.node.children.size(); ++i) {
     if (params.used[i]) continue;
     const Node& child = params.node.children[i];
-    static constexpr const char* parameters[] = {"float",  "integer", "string", "boolean",   "rgb",       "srgb",
-                                                 "spectrum", "point", "vector", "transform", "blackbody", "texture",
-                                                 "ref",    "medium",  "bsdf",   "emitter",   "volume",    "phase"};
+    static constexpr const char* parameters[] = {"float",    "integer", "string", "boolean",   "rgb",       "srgb",
+                                                 "spectrum", "point",   "vector", "transform", "blackbody", "texture",
+                                                 "ref",      "medium",  "bsdf",   "emitter",   "volume",    "phase"};
     if (std::find(std::begin(parameters), std::end(parameters), child.tag) == std::end(parameters))
-      unsupported(params.loader, child, fmt::format("is unknown inside <{} type=\"{}\">", params.node.tag,
-                                                    params.node.written), "left out");
+      unsupported(params.loader, child,
+                  fmt::format("is unknown inside <{} type=\"{}\">", params.node.tag, params.node.written), "left out");
     else if (std::find(harmless.begin(), harmless.end(), child.name) == harmless.end())
       note(params.loader, params.node,
            child.name.empty() ? fmt::format("a nested <{}> is not used", child.tag)

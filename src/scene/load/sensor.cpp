@@ -25,10 +25,12 @@ void read_film(Loader& loader, const Node& node, Camera& camera) {
 
 Filter read_filter(Loader& loader, const Node& node) {
   Params p(loader, node);
-  static constexpr std::pair<const char*, FilterKind> kinds[] = {
-      {"box", FilterKind::box},           {"tent", FilterKind::tent},
-      {"gaussian", FilterKind::gaussian}, {"mitchell", FilterKind::mitchell},
-      {"catmullrom", FilterKind::catmullrom}, {"lanczos", FilterKind::lanczos}};
+  static constexpr std::pair<const char*, FilterKind> kinds[] = {{"box", FilterKind::box},
+                                                                 {"tent", FilterKind::tent},
+                                                                 {"gaussian", FilterKind::gaussian},
+                                                                 {"mitchell", FilterKind::mitchell},
+                                                                 {"catmullrom", FilterKind::catmullrom},
+                                                                 {"lanczos", FilterKind::lanczos}};
   const std::string name = node.type == "lanczossinc" ? "lanczos" : node.type;
   const auto found = std::find_if(std::begin(kinds), std::end(kinds), [&](const auto& k) { return name == k.first; });
   if (found == std::end(kinds)) {
@@ -99,11 +101,11 @@ DVec3 take_scale(Params& p, DMat4& m) {
   return scale;
 }
 
-void read_lens(Params& p, Camera& camera, const DVec3& scale) {
+void read_lens(Params& p, Camera& camera) {
   if (camera.kind != CameraKind::thinlens) return;
   camera.aperture = float(positive(p, "aperture_radius", 0));
   if (!(camera.aperture > 0)) fail(p.loader, p.node, "needs an aperture_radius greater than 0");
-  camera.focus = float(positive(p, "focus_distance", scale.z > 0 ? 1 : 1));
+  camera.focus = float(positive(p, "focus_distance", 1));
 }
 
 void read_clip(Params& p, Camera& camera) {
@@ -130,13 +132,13 @@ void read_view(Params& p, Camera& camera) {
   const double x = number(p, "principal_point_offset_x", 0), y = number(p, "principal_point_offset_y", 0);
   if (!(std::abs(x) <= 100 && std::abs(y) <= 100)) fail(p.loader, p.node, "principal_point_offset should be small");
   camera.principal = Vec2(float(x), float(y));
-  read_lens(p, camera, scale);
+  read_lens(p, camera);
   read_clip(p, camera);
 }
 
 void read_sampler(Loader& loader, const Node& node) {
   Params p(loader, node);
-  const int count = integer(p, "sample_count", 0, 0, 1 << 30);
+  const int count = hint(p, "sample_count", 0);
   if (count > 0) loader.scene.hints.spp = count;
 }
 
@@ -172,22 +174,37 @@ void load_sensor(Loader& loader, const Node& node) {
 }
 
 void load_integrator(Loader& loader, const Node& node) {
+  struct Alias {
+    const char *theirs, *ours;
+  };
+  static constexpr Alias names[] = {{"path", "path"},
+                                    {"bdpt", "bdpt"},
+                                    {"light", "light"},
+                                    {"guided_path", "guided-path"},
+                                    {"guided-path", "guided-path"},
+                                    {"guided-bdpt", "guided-bdpt"},
+                                    {"vcm", "vcm"},
+                                    {"guided-vcm", "guided-vcm"},
+                                    {"photon", "photon"},
+                                    {"vpl", "vpl"},
+                                    {"volpath", "path"},
+                                    {"volpath_simple", "path"},
+                                    {"volpathmis", "path"},
+                                    {"ptracer", "light"},
+                                    {"direct", "path"}};
   Hints& hints = loader.scene.hints;
   Params p(loader, node);
-  const std::vector<const Node*> inner = nested(p, "integrator");
-  const int depth = integer(p, "max_depth", -1, -1, 1 << 30);
-  if (has(p, "max_depth")) hints.max_depth = depth == 0 ? -1 : depth;
-  static constexpr std::pair<const char*, const char*> same[] = {{"volpath", "path"}, {"volpath_simple", "path"},
-                                                                 {"volpathmis", "path"}, {"ptracer", "light"},
-                                                                 {"guided_path", "guided-path"}};
-  const auto alias = std::find_if(std::begin(same), std::end(same), [&](const auto& s) { return node.type == s.first; });
-  hints.integrator = alias == std::end(same) ? node.written : alias->second;
-  if (boolean(p, "hide_emitters", false)) note(loader, node, "hide_emitters is not supported: lights are visible");
-  if (!inner.empty()) {
-    const Open open(loader, node);
-    load_integrator(loader, *inner.front());
-    return;
-  }
+  const int depth = hint(p, "max_depth", -1);
+  if (has(p, "max_depth")) hints.max_depth = depth;
+  if (node.type == "direct") hints.max_depth = 2;  // the light that reaches what the camera sees, and no further
+  if (boolean(p, "hide_emitters", false)) note(loader, node, "hide_emitters is not supported: lights stay visible");
+  const Open open(loader, node);
+  if (const std::vector<const Node*> inner = nested(p, "integrator"); !inner.empty())
+    return load_integrator(loader, *inner.front());  // aov, moment and others measure what another one renders
+  const auto name =
+      std::find_if(std::begin(names), std::end(names), [&](const Alias& a) { return node.type == a.theirs; });
+  if (name == std::end(names)) note(loader, node, "Ajar has no integrator of this name: its own default is used");
+  hints.integrator = name == std::end(names) ? node.written : name->ours;
 }
 
 }  // namespace ajar

@@ -56,7 +56,11 @@ uint32_t add_mesh(Params& p, Mesh&& mesh) {
 
 // A mesh without a file.
 void simple_mesh(Params& p, Shape& shape, Mesh&& mesh, const DMat4& m) {
-  transform(mesh, Mat4(m));
+  try {
+    transform(mesh, Mat4(m));
+  } catch (const Error& error) {
+    fail(p.loader, p.node, error.what());
+  }
   if (boolean(p, "flip_normals", false)) turn(mesh);
   if (boolean(p, "face_normals", false)) mesh.normals.clear();
   shape.mesh = add_mesh(p, std::move(mesh));
@@ -71,8 +75,9 @@ void sphere(Params& p, Shape& shape) {
   const DMat4 m = shape_to_world(p, false) * local;
   check_invertible(p.loader, p.node, m);
   if (!is_similarity(m)) {
-    note(p.loader, p.node, fmt::format("to_world makes an ellipsoid of it: rendered as a mesh of {} x {} cells",
-                                       sphere_rings, sphere_segments));
+    note(p.loader, p.node,
+         fmt::format("to_world makes an ellipsoid of it: rendered as a mesh of {} x {} cells", sphere_rings,
+                     sphere_segments));
     simple_mesh(p, shape, make_sphere(sphere_rings, sphere_segments), m);
     return;
   }
@@ -122,12 +127,14 @@ void file_mesh(Params& p, Shape& shape, const std::string& key, MeshOptions opti
   options.flip_v = boolean(p, "flip_tex_coords", options.flip_v);
   Mesh mesh;
   try {
-    if (p.loader.mesh_uses[key] > 1 && is_similarity(m) && determinant(m) > 0) {
-      const std::string exact = fmt::format("{}|{}{}{}|{}", key, options.face_normals, options.flip_normals,
-                                            options.flip_v, options.max_smooth_angle);
-      auto found = p.loader.meshes.find(exact);
-      if (found == p.loader.meshes.end()) found = p.loader.meshes.emplace(exact, read(options)).first;
-      mesh = found->second;
+    const std::string exact = fmt::format("{}|{}{}{}|{}", key, options.face_normals, options.flip_normals,
+                                          options.flip_v, options.max_smooth_angle);
+    const int left = --p.loader.mesh_uses[key];
+    const auto kept = p.loader.meshes.find(exact);
+    const bool known = kept != p.loader.meshes.end();
+    if ((left > 0 || known) && is_similarity(m) && determinant(m) > 0) {
+      mesh = known ? left > 0 ? kept->second : std::move(kept->second) : read(options);
+      if (left > 0 && !known) p.loader.meshes.emplace(exact, mesh);
       transform(mesh, Mat4(m));
     } else {
       options.to_world = Mat4(m);
@@ -162,8 +169,8 @@ struct Entry {
   const char* type;
   void (*read)(Params&, Shape&);
 };
-constexpr Entry entries[] = {{"obj", obj},   {"rectangle", rectangle}, {"sphere", sphere}, {"serialized", serialized},
-                             {"ply", ply},   {"cube", cube},           {"disk", disk},     {"cylinder", cylinder}};
+constexpr Entry entries[] = {{"obj", obj}, {"rectangle", rectangle}, {"sphere", sphere}, {"serialized", serialized},
+                             {"ply", ply}, {"cube", cube},           {"disk", disk},     {"cylinder", cylinder}};
 
 uint32_t material_of(Params& p, bool emits) {
   const std::vector<const Node*> bsdfs = nested(p, "bsdf");
@@ -171,8 +178,9 @@ uint32_t material_of(Params& p, bool emits) {
   if (!bsdfs.empty()) return load_bsdf(p.loader, *bsdfs.front());
   uint32_t& shared = emits ? p.loader.black : p.loader.grey;
   if (shared == none) {
-    shared = uint32_t(p.loader.scene.materials.size());
-    p.loader.scene.materials.emplace_back().reflectance = Slot(emits ? 0.0f : 0.5f);
+    Material m;
+    m.reflectance = Slot(emits ? 0.0f : 0.5f);
+    shared = add_material(p.loader, p.node, m);
   }
   return shared;
 }
@@ -215,19 +223,20 @@ uint32_t load_shape_group(Loader& loader, const Node& node) {
 }
 
 void load_shape(Loader& loader, const Node& node, uint32_t group) {
-  const Open open(loader, node);
   if (node.type == "shapegroup") {
     if (group != none) fail(loader, node, "a shapegroup inside a shapegroup is not supported");
     load_shape_group(loader, node);
     return;
   }
+  const Open open(loader, node);
   if (node.type == "instance") return load_instance(loader, node, group);
   Params p(loader, node);
   if (node.type == "merge") {
     for (const Node* shape : nested(p, "shape")) load_shape(loader, *shape, group);
     return finish(p);
   }
-  const auto entry = std::find_if(std::begin(entries), std::end(entries), [&](const Entry& e) { return node.type == e.type; });
+  const auto entry =
+      std::find_if(std::begin(entries), std::end(entries), [&](const Entry& e) { return node.type == e.type; });
   if (entry == std::end(entries))
     return unsupported(loader, node, fmt::format("unknown shape; {}", supported), "left out");
   Shape shape;

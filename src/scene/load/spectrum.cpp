@@ -163,11 +163,12 @@ Rgb colour_of(Loader& loader, const Node& node, Colour kind) {
   if (node.tag == "blackbody") {
     const std::string* kelvin = attribute(node, "temperature");
     if (kelvin == nullptr) fail(loader, node, "needs temperature=\"...\"");
-    return checked(loader, node,
-                   rgb_of_blackbody(kelvin_of(loader, node, *kelvin)) * float(number_attribute(loader, node, "scale", 1)),
-                   kind);
+    return checked(
+        loader, node,
+        rgb_of_blackbody(kelvin_of(loader, node, *kelvin)) * float(number_attribute(loader, node, "scale", 1)), kind);
   }
-  if (node.tag == "rgb" || node.tag == "srgb") return checked(loader, node, rgb_of(loader, node, node.tag == "srgb"), kind);
+  if (node.tag == "rgb" || node.tag == "srgb")
+    return checked(loader, node, rgb_of(loader, node, node.tag == "srgb"), kind);
   if (node.tag == "float" || node.tag == "integer" || node.tag == "string") {
     const auto x = to_number(value_of(loader, node));
     if (!x) fail(loader, node, fmt::format("\"{}\" is not a number", value_of(loader, node).substr(0, 80)));

@@ -12,11 +12,11 @@ namespace {
 constexpr const char* supported = "supported: bitmap, checkerboard, scale, mesh_attribute";
 
 // Affine map of (u, v): scale and offset (0.x), then the transform (2.x, 3.x).
-Mat3 uv_map(Params& p, double u_scale, double v_scale) {
+Mat3 uv_map(Params& p) {
   const double uniform = number(p, "uvscale", number(p, "uv_scale", 1));
   DMat4 m(1);
-  m[0][0] = number(p, "uscale", uniform) * u_scale;
-  m[1][1] = number(p, "vscale", uniform) * v_scale;
+  m[0][0] = number(p, "uscale", uniform);
+  m[1][1] = number(p, "vscale", uniform);
   m[3][0] = number(p, "uoffset", 0);
   m[3][1] = number(p, "voffset", 0);
   if (const Node* node = find(p, {"to_uv"})) {
@@ -29,34 +29,13 @@ Mat3 uv_map(Params& p, double u_scale, double v_scale) {
 }
 
 Wrap wrap_of(Params& p, const char* name, Wrap otherwise) {
-  static constexpr std::pair<const char*, Wrap> words[] = {{"repeat", Wrap::repeat}, {"mirror", Wrap::mirror},
-                                                           {"clamp", Wrap::clamp},   {"zero", Wrap::zero},
-                                                           {"one", Wrap::one},       {"black", Wrap::zero},
-                                                           {"white", Wrap::one}};
-  const std::string word =
-      choice(p, name, "", {"repeat", "mirror", "clamp", "zero", "one", "black", "white"});
+  static constexpr std::pair<const char*, Wrap> words[] = {
+      {"repeat", Wrap::repeat}, {"mirror", Wrap::mirror}, {"clamp", Wrap::clamp}, {"zero", Wrap::zero},
+      {"one", Wrap::one},       {"black", Wrap::zero},    {"white", Wrap::one}};
+  const std::string word = choice(p, name, "", {"repeat", "mirror", "clamp", "zero", "one", "black", "white"});
   for (const auto& [w, wrap] : words)
     if (word == w) return wrap;
   return otherwise;
-}
-
-Texture bitmap(Params& p) {
-  Texture t;
-  t.flip_v = false;  // v = 0 is the top row, as in Mitsuba; obj files are turned when they are read
-  const std::string path = file(p, "filename");
-  const std::string filter =
-      choice(p, "filter_type", "bilinear", {"nearest", "bilinear", "trilinear", "ewa"});
-  t.nearest = filter == "nearest";
-  t.wrap_u = t.wrap_v = wrap_of(p, "wrap_mode", Wrap::repeat);
-  t.wrap_u = wrap_of(p, "wrap_mode_u", t.wrap_u);
-  t.wrap_v = wrap_of(p, "wrap_mode_v", t.wrap_v);
-  const bool raw = boolean(p, "raw", false);
-  const double gamma = number(p, "gamma", 0);
-  const std::string channel = choice(p, "channel", "", {"r", "g", "b", "a", "x", "y", "z"});
-  t.image = load_image_file(p.loader, p.node, path, raw, gamma, channel);
-  t.to_uv = uv_map(p, 1, 1);
-  finish(p, {"cache", "max_anisotropy", "format", "accel", "id"});
-  return t;
 }
 
 Texture checkerboard(Params& p, Colour kind) {
@@ -64,7 +43,7 @@ Texture checkerboard(Params& p, Colour kind) {
   t.kind = TextureKind::checkerboard;
   t.color0 = slot(p, {"color0"}, 0.4f, kind);
   t.color1 = slot(p, {"color1"}, 0.2f, kind);
-  t.to_uv = uv_map(p, 1, 1);
+  t.to_uv = uv_map(p);
   finish(p);
   return t;
 }
@@ -95,43 +74,46 @@ Texture mesh_attribute(Params& p) {
                 "vertex_color is taken");
   const double scale = number(p, "scale", 1);
   if (scale != 1) {
-    p.loader.scene.textures.push_back(t);
+    const uint32_t inner = add_texture(p.loader, p.node, std::move(t));
     t = {};
     t.kind = TextureKind::scale;
-    t.color0.texture = uint32_t(p.loader.scene.textures.size() - 1);
+    t.color0.texture = inner;
     t.color1 = Slot(float(scale));
   }
   finish(p);
   return t;
 }
 
-// One channel of an image as an image of its own.
-Image extract(const Image& from, char channel) {
-  Image out;
-  out.width = from.width;
-  out.height = from.height;
-  out.channels = 1;
-  const size_t pixels = size_t(from.width) * size_t(from.height);
-  if (channel == 'a') {
-    out.bytes = from.alpha.empty() ? std::vector<uint8_t>(pixels, 255) : from.alpha;
-    for (int i = 0; i < 256; ++i) out.decode[i] = float(i) / 255;
-    return out;
-  }
-  const size_t at = from.channels == 1 || channel == 'r' || channel == 'x' ? 0 : channel == 'g' || channel == 'y' ? 1 : 2;
-  const size_t n = size_t(from.channels);
-  std::copy(std::begin(from.decode), std::end(from.decode), out.decode);
-  for (size_t i = 0; i < pixels && !from.bytes.empty(); ++i) out.bytes.push_back(from.bytes[i * n + at]);
-  for (size_t i = 0; i < pixels && !from.floats.empty(); ++i) out.floats.push_back(from.floats[i * n + at]);
-  return out;
+Channel channel_of(Params& p) {
+  const std::string word = choice(p, "channel", "", {"r", "g", "b", "a", "x", "y", "z", "all"});
+  if (word == "r" || word == "x") return Channel::red;
+  if (word == "g" || word == "y") return Channel::green;
+  if (word == "b" || word == "z") return Channel::blue;
+  return word == "a" ? Channel::alpha : Channel::color;
+}
+
+Texture bitmap(Params& p) {
+  Texture t;
+  t.flip_v = false;  // v = 0 is the top row, as in Mitsuba; obj files are turned when they are read
+  const std::string path = file(p, "filename");
+  t.nearest = choice(p, "filter_type", "bilinear", {"nearest", "bilinear", "trilinear", "ewa"}) == "nearest";
+  t.wrap_u = t.wrap_v = wrap_of(p, "wrap_mode", Wrap::repeat);
+  t.wrap_u = wrap_of(p, "wrap_mode_u", t.wrap_u);
+  t.wrap_v = wrap_of(p, "wrap_mode_v", t.wrap_v);
+  const bool raw = boolean(p, "raw", false);
+  t.image = load_image_file(p.loader, p.node, path, raw, number(p, "gamma", 0));
+  t.channel = channel_of(p);
+  t.to_uv = uv_map(p);
+  finish(p, {"cache", "max_anisotropy", "format", "accel", "id"});
+  return t;
 }
 
 }  // namespace
 
-uint32_t load_image_file(Loader& loader, const Node& node, const std::string& path, bool raw, double gamma,
-                         const std::string& channel) {
+uint32_t load_image_file(Loader& loader, const Node& node, const std::string& path, bool raw, double gamma) {
   if (gamma > 0 && std::abs(gamma - 1) < 1e-6) raw = true;
   if (gamma > 100) fail(loader, node, fmt::format("gamma {} should be from 0 to 100", gamma));
-  const std::string key = fmt::format("{}|{}|{}|{}", raw, raw ? 0 : std::max(gamma, 0.0), channel, path);
+  const std::string key = fmt::format("{}|{}|{}", raw, raw ? 0 : std::max(gamma, 0.0), path);
   const auto found = loader.images.find(key);
   if (found != loader.images.end()) return found->second;
   Image image;
@@ -140,7 +122,6 @@ uint32_t load_image_file(Loader& loader, const Node& node, const std::string& pa
   } catch (const Error& error) {
     fail(loader, node, error.what());
   }
-  if (!channel.empty()) image = extract(image, channel[0]);
   const uint32_t index = uint32_t(loader.scene.images.size());
   loader.scene.images.push_back(std::move(image));
   loader.images.emplace(key, index);
@@ -149,10 +130,20 @@ uint32_t load_image_file(Loader& loader, const Node& node, const std::string& pa
 
 bool is_texture(const Node& node) {
   if (node.tag != "texture" && node.tag != "spectrum") return false;
-  static constexpr const char* constants[] = {"uniform", "d65",     "srgb",      "srgb_d65",
+  static constexpr const char* constants[] = {"uniform", "d65",       "srgb",      "srgb_d65",
                                               "regular", "irregular", "blackbody", "rawconstant"};
   if (node.type.empty()) return node.tag == "texture";
   return std::find(std::begin(constants), std::end(constants), node.type) == std::end(constants);
+}
+
+uint32_t add_texture(Loader& loader, const Node& node, Texture&& texture) {
+  int size = 1;
+  for (const Slot* s : {&texture.color0, &texture.color1})
+    if (s->texture != none) size += loader.texture_sizes[s->texture];
+  if (size > max_tree) fail(loader, node, fmt::format("is made of more than {} textures", max_tree));
+  loader.texture_sizes.push_back(size);
+  loader.scene.textures.push_back(std::move(texture));
+  return uint32_t(loader.scene.textures.size() - 1);
 }
 
 uint32_t load_texture(Loader& loader, const Node& node, Colour kind) {
@@ -174,8 +165,7 @@ uint32_t load_texture(Loader& loader, const Node& node, Colour kind) {
     t.kind = TextureKind::checkerboard;
     t.color0 = t.color1 = Slot(0.5f);
   }
-  const uint32_t index = uint32_t(loader.scene.textures.size());
-  loader.scene.textures.push_back(t);
+  const uint32_t index = add_texture(loader, node, std::move(t));
   loader.textures.emplace(std::pair{&node, kind}, index);
   return index;
 }

@@ -83,7 +83,8 @@ DMat4 to_world(Params& params, const char* name) {
   DMat4 m = transform_of(params.loader, *node);
   const double w = m[3][3];
   for (int column = 0; column < 3; ++column)
-    if (std::abs(m[column][3]) > 1e-6 * std::abs(w)) fail(params.loader, *node, "is projective; Ajar takes affine ones");
+    if (std::abs(m[column][3]) > 1e-6 * std::abs(w))
+      fail(params.loader, *node, "is projective; Ajar takes affine ones");
   if (!(std::abs(w) > 0)) fail(params.loader, *node, "is singular");
   if (w != 1) m = m * (1 / w);
   return m;

@@ -26,8 +26,10 @@ constexpr size_t max_text = size_t(1) << 30;
 
 struct Reader {
   Document& document;
-  const std::map<std::string, std::string>& defines;
-  std::map<std::string, std::string> parameters;  // defines, then what <default> adds
+  pugi::xml_node root;                            // of the scene's own file
+  std::map<std::string, std::string> parameters;  // from the command line, then what <default> adds
+  std::map<std::string, std::string> later;       // defaults that stand below their use, looked up when one is missing
+  std::set<std::string> looked;                   // files searched for them
   std::set<std::string> declared, used;
   std::vector<std::string> including;  // canonical paths from the scene to the file being read
   size_t nodes = 0;
@@ -52,8 +54,8 @@ uint32_t line_at(const Source& s, ptrdiff_t offset) {
 }
 
 [[noreturn]] void fail(const Reader& r, const Source& s, const pugi::xml_node& node, const std::string& text) {
-  throw Error(fmt::format("{}:{}: <{}>: {}", r.document.files[s.file], line_at(s, node.offset_debug()), node.name(),
-                          text));
+  throw Error(
+      fmt::format("{}:{}: <{}>: {}", r.document.files[s.file], line_at(s, node.offset_debug()), node.name(), text));
 }
 
 std::string known_parameters(const Reader& r) {
@@ -62,24 +64,62 @@ std::string known_parameters(const Reader& r) {
   return list.empty() ? "it has none" : "known are " + list;
 }
 
-// Puts in the value of every $name; of several names that fit, the longest is meant.
+void parse(const Document& document, pugi::xml_document& xml, const Source& s, const std::string& name) {
+  const pugi::xml_parse_result result = xml.load_buffer(s.text.data(), s.text.size());
+  if (result.status == pugi::status_no_document_element || s.text.find_first_not_of(" \t\r\n") == std::string::npos)
+    throw Error(fmt::format("{}: holds no XML element; a scene begins with <scene version=\"3.0.0\">", name));
+  if (!result)
+    throw Error(fmt::format("{}:{}: not well-formed XML: {}", document.files[s.file], line_at(s, result.offset),
+                            result.description()));
+}
+
+// Defaults that a file and those it includes give anywhere. Quiet about what is wrong: the real reading will tell.
+void look_ahead(Reader& r, const pugi::xml_node& xml, int depth) {
+  if (depth > max_depth) return;
+  for (const pugi::xml_node& child : xml.children()) {
+    const std::string_view tag = child.name();
+    const std::string name = child.attribute("name").value(), value = child.attribute("value").value();
+    if (tag == "default" && !name.empty() && value.find('$') == value.npos) r.later.emplace(name, value);
+    if (tag != "include") look_ahead(r, child, depth + 1);
+    if (tag != "include" || depth > max_include_depth) continue;
+    Node here;
+    const std::string path = find_file(r.document, here, child.attribute("filename").value());
+    pugi::xml_document included;
+    if (path.empty() || !r.looked.insert(path).second) continue;
+    if (included.load_file(path.c_str())) look_ahead(r, included.document_element(), depth + 1);
+  }
+}
+
+// The parameter whose name the text begins with; of several, the longest is meant.
+const std::pair<const std::string, std::string>* parameter_at(const std::map<std::string, std::string>& parameters,
+                                                              std::string_view text) {
+  const std::pair<const std::string, std::string>* found = nullptr;
+  for (const auto& p : parameters)
+    if (text.starts_with(p.first) && (found == nullptr || p.first.size() > found->first.size())) found = &p;
+  return found;
+}
+
+// Puts in the value of every $name.
 std::string substitute(Reader& r, const Source& s, const pugi::xml_node& node, const char* value) {
   std::string out;
   std::string_view rest = value;
   for (size_t dollar; (dollar = rest.find('$')) != rest.npos;) {
     out += rest.substr(0, dollar);
     rest.remove_prefix(dollar + 1);
-    const std::pair<const std::string, std::string>* found = nullptr;
-    for (const auto& p : r.parameters)
-      if (rest.starts_with(p.first) && (found == nullptr || p.first.size() > found->first.size())) found = &p;
+    const auto* found = parameter_at(r.parameters, rest);
+    if (found == nullptr) {
+      if (r.looked.insert("").second) look_ahead(r, r.root, 0);
+      found = parameter_at(r.later, rest);
+    }
     if (found == nullptr) {
       size_t n = 0;
       while (n < rest.size() && (std::isalnum(static_cast<unsigned char>(rest[n])) != 0 || rest[n] == '_')) ++n;
       const std::string name(rest.substr(0, n));
-      fail(r, s, node,
-           fmt::format("the parameter ${} has no value here: give -D {}=VALUE or write <default name=\"{}\" "
-                       "value=\"...\"/> above; {}",
-                       name, name, name, known_parameters(r)));
+      fail(
+          r, s, node,
+          fmt::format("the parameter ${} has no value: give -D {}=VALUE or write <default name=\"{}\" value=\"...\"/>; "
+                      "{}",
+                      name, name, name, known_parameters(r)));
     }
     r.used.insert(found->first);
     out += found->second;
@@ -131,15 +171,6 @@ void read_default(Reader& r, const Source& s, const pugi::xml_node& xml, const N
   r.parameters.emplace(name, *value);
 }
 
-void parse(Reader& r, pugi::xml_document& xml, const Source& s, const std::string& name) {
-  const pugi::xml_parse_result result = xml.load_buffer(s.text.data(), s.text.size());
-  if (result.status == pugi::status_no_document_element || s.text.find_first_not_of(" \t\r\n") == std::string::npos)
-    throw Error(fmt::format("{}: holds no XML element; a scene begins with <scene version=\"3.0.0\">", name));
-  if (!result)
-    throw Error(fmt::format("{}:{}: not well-formed XML: {}", r.document.files[s.file], line_at(s, result.offset),
-                            result.description()));
-}
-
 void read_include(Reader& r, const Source& s, const pugi::xml_node& xml, const Node& node, Node& into, int depth) {
   const std::string& name = need(r, s, xml, node, "filename");
   const std::string path = find_file(r.document, node, name);
@@ -153,7 +184,7 @@ void read_include(Reader& r, const Source& s, const pugi::xml_node& xml, const N
   r.document.files.push_back(path);
   const Source inner = make_source(text, uint32_t(r.document.files.size() - 1), fs::path(path).parent_path().string());
   pugi::xml_document parsed;
-  parse(r, parsed, inner, path);
+  parse(r.document, parsed, inner, path);
   r.including.push_back(canonical);
   const pugi::xml_node root = parsed.document_element();
   if (std::string_view(root.name()) == "scene") {
@@ -174,7 +205,8 @@ void read_path(Reader& r, const Source& s, const pugi::xml_node& xml, const Node
       r.document.folders.insert(r.document.folders.begin(), candidate.string());
       return;
     }
-  fail(r, s, xml, fmt::format("there is no folder {}", folder.string()));
+  r.document.notes.push_back(
+      fmt::format("{}: there is no folder {}: left out", place(r.document, node), folder.string()));
 }
 
 void read_children(Reader& r, const Source& s, const pugi::xml_node& xml, Node& into, int depth) {
@@ -256,24 +288,23 @@ Document read_document(const std::string& text, const std::string& folder, const
   Document document;
   document.files.push_back(name);
   document.folders.push_back(folder.empty() ? "." : folder);
-  Reader r{document, defines, defines, {}, {}, {}};
-  std::error_code ignored;
-  r.including.push_back(fs::weakly_canonical(fs::path(name), ignored).string());
   const Source source = make_source(text, 0, document.folders.front());
   pugi::xml_document xml;
-  parse(r, xml, source, name);
-  const pugi::xml_node root = xml.document_element();
-  if (std::string_view(root.name()) != "scene")
-    fail(r, source, root, "the file's outermost element should be <scene>; is this a Mitsuba scene?");
-  document.root = make_node(r, source, root);
+  parse(document, xml, source, name);
+  Reader r{document, xml.document_element(), defines};
+  std::error_code ignored;
+  r.including.push_back(fs::weakly_canonical(fs::path(name), ignored).string());
+  if (std::string_view(r.root.name()) != "scene")
+    fail(r, source, r.root, "the file's outermost element should be <scene>; is this a Mitsuba scene?");
+  document.root = make_node(r, source, r.root);
   const std::string* version = attribute(document.root, "version");
   document.old = version != nullptr && version->starts_with("0.");
-  read_children(r, source, root, document.root, 0);
+  read_children(r, source, r.root, document.root, 0);
   for (const auto& [key, value] : defines)
     if (!r.declared.contains(key) && !r.used.contains(key)) {
       r.parameters.erase(key);
-      throw Error(fmt::format("{}: -D {}: the scene has no parameter of this name; {}", name, key,
-                              known_parameters(r)));
+      throw Error(
+          fmt::format("{}: -D {}: the scene has no parameter of this name; {}", name, key, known_parameters(r)));
     }
   return document;
 }

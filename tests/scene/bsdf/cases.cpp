@@ -1,5 +1,7 @@
 #include "scene/bsdf/cases.h"
 
+#include <fmt/format.h>
+
 #include <stdexcept>
 
 #include "ajar/core/warp.h"
@@ -47,8 +49,9 @@ void add_microfacets(std::vector<Case>& all, MaterialKind kind, const std::strin
       m.alpha_u = u;
       m.alpha_v = v;
       const std::string alpha =
-          std::to_string(int(std::lround(u * 100))) + (u != v ? "x" + std::to_string(int(std::lround(v * 100))) : "");
-      all.push_back({name + (d == Microfacet::ggx ? "_ggx_" : "_beckmann_") + alpha, {m}, transmits, transmits});
+          u == v ? fmt::format("{:.0f}", 100 * u) : fmt::format("{:.0f}x{:.0f}", 100 * u, 100 * v);
+      const char* kind_name = d == Microfacet::ggx ? "ggx" : "beckmann";
+      all.push_back({fmt::format("{}_{}_{}", name, kind_name, alpha), {m}, transmits, transmits});
     }
 }
 
@@ -133,12 +136,23 @@ std::vector<Case> cases() {
     phong.specular = 0.3f;
     phong.reflectance = Rgb(0.4f, 0.5f, 0.2f);
     phong.exponent = n;
-    all.push_back({"phong_" + std::to_string(int(n)), {phong}});
+    all.push_back({fmt::format("phong_{}", int(n)), {phong}});
   }
   add_principled(all);
   all.push_back({"null", {material(MaterialKind::null)}, true, true});
   add_nested(all);
   return all;
+}
+
+std::vector<Case> smooth_cases() {
+  std::vector<Case> some = cases();
+  std::erase_if(some, [](const Case& c) { return !resolved(c.materials).bsdf.has_smooth; });
+  return some;
+}
+std::vector<Case> delta_cases() {
+  std::vector<Case> some = cases();
+  std::erase_if(some, [](const Case& c) { return !resolved(c.materials).bsdf.has_delta; });
+  return some;
 }
 
 Case find_case(const std::string& name) {

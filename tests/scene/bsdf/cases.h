@@ -23,6 +23,8 @@ struct Case {
 inline std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
 
 std::vector<Case> cases();
+std::vector<Case> smooth_cases();  ///< those with a part that is not a delta
+std::vector<Case> delta_cases();   ///< those with a delta
 
 /// The case by its name.
 Case find_case(const std::string& name);

@@ -1,6 +1,7 @@
 // Fresnel reflectances against numbers from elsewhere, microfacet distributions against their definitions.
 #include "ajar/scene/bsdf/microfacet.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <complex>
@@ -140,9 +141,8 @@ INSTANTIATE_TEST_SUITE_P(Bsdf, Facet,
                                          Facets{0.3f, 0.3f, Microfacet::beckmann},
                                          Facets{0.1f, 0.6f, Microfacet::beckmann}, Facets{1, 1, Microfacet::beckmann}),
                          [](const auto& i) {
-                           return std::string(i.param.kind == Microfacet::ggx ? "ggx_" : "beckmann_") +
-                                  std::to_string(int(i.param.alpha_u * 100)) + "_" +
-                                  std::to_string(int(i.param.alpha_v * 100));
+                           return fmt::format("{}_{:.0f}_{:.0f}", i.param.kind == Microfacet::ggx ? "ggx" : "beckmann",
+                                              100 * i.param.alpha_u, 100 * i.param.alpha_v);
                          });
 
 TEST(Facets, FiniteAtTheSmallestRoughness) {

@@ -1,0 +1,164 @@
+#include "ajar/scene/build.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace ajar {
+namespace {
+
+void expect_finished(const Scene& scene, const std::string& name) {
+  EXPECT_TRUE(is_finite(scene.center)) << name;
+  EXPECT_TRUE(scene.radius > 0.1f && scene.radius < 200) << name << " " << scene.radius;
+  ASSERT_FALSE(scene.lights.empty()) << name;
+  EXPECT_TRUE(scene.light_choice.sum > 0 && std::isfinite(scene.light_choice.sum)) << name;
+  for (uint32_t i = 0; i < scene.lights.size(); ++i) EXPECT_GT(power(scene, i), 0) << name;
+  for (uint32_t i = 0; i < scene.materials.size(); ++i) EXPECT_EQ(material_problem(scene, i), "") << name;
+  for (const Shape& shape : scene.shapes) {
+    EXPECT_LT(shape.material, scene.materials.size()) << name;
+    if (shape.kind == ShapeKind::mesh) {
+      EXPECT_LT(shape.mesh, scene.meshes.size()) << name;
+    }
+  }
+  EXPECT_TRUE(is_finite(generate(scene.camera, Vec2(0.5f), Vec2(0.5f)).d)) << name;
+}
+
+// Geometric normal of a triangle times twice its area, and its first corner.
+std::pair<Vec3, Vec3> face(const Mesh& mesh, const glm::uvec3& t) {
+  const Vec3 p = mesh.positions[t.x];
+  return {glm::cross(mesh.positions[t.y] - p, mesh.positions[t.z] - p), p};
+}
+
+TEST(Build, every_feature_scene_is_finished) {
+  std::set<std::string> names;
+  for (const FeatureScene& feature : feature_scenes()) {
+    const Scene scene = feature.make();
+    expect_finished(scene, feature.name);
+    EXPECT_LE(scene.camera.width, 32) << feature.name;
+    EXPECT_TRUE(names.insert(feature.name).second) << feature.name << " twice";
+  }
+  EXPECT_GE(names.size(), 30u);
+}
+
+TEST(Build, every_material_has_an_example) {
+  for (int kind = 0; kind <= int(MaterialKind::normalmap); ++kind)
+    expect_finished(with_material(MaterialKind(kind)), "material " + std::to_string(kind));
+}
+
+TEST(Build, furnaces_are_closed_and_shine_inwards) {
+  for (const Oven oven : {Oven::box, Oven::sphere, Oven::globe}) {
+    const Scene scene = furnace(oven, Material{}, Rgb(2));
+    expect_finished(scene, "furnace");
+    ASSERT_EQ(scene.shapes.size(), 1u);
+    EXPECT_EQ(scene.lights[scene.shapes[0].light].radiance.value, Rgb(2));
+    if (oven == Oven::sphere) {
+      EXPECT_TRUE(scene.shapes[0].flip);
+      continue;
+    }
+    for (const glm::uvec3& t : scene.meshes[0].triangles) {
+      const auto [n, p] = face(scene.meshes[0], t);
+      EXPECT_LT(glm::dot(n, p), 0);
+    }
+  }
+  expect_finished(inside_sphere(), "inside");
+}
+
+TEST(Build, the_polygon_has_its_area_and_faces_the_floor) {
+  for (const int n : {3, 4, 5, 12}) {
+    const Scene scene = polygon_over_plane(n, 2, 0.5f);
+    expect_finished(scene, "polygon");
+    const Mesh& mesh = scene.meshes[1];
+    EXPECT_NEAR(mesh.total_area, 0.5 * n * 0.25 * std::sin(2 * std::numbers::pi / n), 1e-6);
+    for (const glm::uvec3& t : mesh.triangles) EXPECT_LT(face(mesh, t).first.y, 0);
+  }
+  // The camera sees floor alone: every corner ray goes down, below the polygon.
+  const Scene scene = polygon_over_plane(4);
+  for (const Vec2& at : {Vec2(0, 0), Vec2(32, 0), Vec2(0, 32), Vec2(32, 32)}) {
+    const CameraRay ray = generate(scene.camera, at, Vec2(0.5f));
+    EXPECT_LT(ray.o.y, 1);
+    EXPECT_LT(ray.d.y, 0);
+    EXPECT_LT(glm::length(ray.o - ray.d * (ray.o.y / ray.d.y)), 50);
+  }
+}
+
+TEST(Build, two_rooms_share_an_opening_and_one_light) {
+  for (const float door : {0.0f, 5.0f, 90.0f, 120.0f}) {
+    const Scene scene = two_rooms(door);
+    expect_finished(scene, "two rooms");
+    EXPECT_EQ(scene.lights.size(), 1u);
+    for (const size_t room : {0, 1}) {
+      EXPECT_EQ(scene.meshes[room].triangles.size(), 10u);  // five walls
+      for (const glm::uvec3& t : scene.meshes[room].triangles) {
+        const auto [n, p] = face(scene.meshes[room], t);
+        EXPECT_GT(glm::dot(n, Vec3(2, 1.25f, room == 0 ? 2 : -2) - p), 0);  // looks into the room
+      }
+    }
+    EXPECT_GT(scene.camera.to_world[3].z, 0);                               // the camera here,
+    for (const Vec3& p : scene.meshes.back().positions) EXPECT_LT(p.z, 0);  // the lamp there
+  }
+}
+
+TEST(Build, mirror_chains_reach_their_screen) {
+  for (const int n : {0, 1, 2, 7, 64}) {
+    const Scene scene = mirror_chain(n);
+    expect_finished(scene, "mirrors");
+    ASSERT_EQ(scene.shapes.size(), size_t(n) + 2);
+    Vec3 o(0), d = glm::normalize(Vec3(1, 1, 0));
+    for (int i = 0; i <= n; ++i) {  // by hand: the next shape's plane, inside its outline, from its outer side
+      const Mesh& mesh = scene.meshes[size_t(i)];
+      const Vec3 normal = glm::normalize(face(mesh, mesh.triangles[0]).first);
+      const float t = glm::dot(mesh.positions[0] - o, normal) / glm::dot(d, normal);
+      EXPECT_GT(t, 0.1f);
+      EXPECT_LT(glm::dot(d, normal), 0) << i << " of " << n;
+      o += t * d, d = glm::reflect(d, normal);
+      const Vec3 middle = 0.5f * (mesh.positions[0] + mesh.positions[2]);
+      EXPECT_LT(max_abs(o - middle), 1e-3f) << i << " of " << n;
+    }
+  }
+}
+
+TEST(Build, many_lights_are_as_many_and_the_seed_decides) {
+  for (const int n : {1, 2, 100, 1000}) {
+    const Scene scene = many_lights(n, 3);
+    EXPECT_EQ(scene.lights.size(), size_t(n));
+    EXPECT_GT(scene.light_choice.sum, 0);
+  }
+  const Scene a = many_lights(9, 1), b = many_lights(9, 1), c = many_lights(9, 2);
+  EXPECT_EQ(a.meshes.back().positions, b.meshes.back().positions);
+  EXPECT_NE(a.meshes.back().positions, c.meshes.back().positions);
+  EXPECT_TRUE(many_lights(0).lights.empty());
+}
+
+TEST(Build, instances_are_copies_or_mirror_images) {
+  const Scene copies = instanced(false), mirrored = instanced(true);
+  ASSERT_EQ(mirrored.instances.size(), 2u);
+  EXPECT_GT(glm::determinant(Mat3(copies.instances[1].to_world)), 0);
+  EXPECT_LT(glm::determinant(Mat3(mirrored.instances[1].to_world)), 0);
+  for (const Shape& shape : mirrored.shapes) {
+    if (shape.group == none) continue;
+    for (const Vec3& p : mirrored.meshes[shape.mesh].positions) {
+      const Vec3 left = mirrored.instances[0].to_world * Vec4(p, 1),
+                 right = mirrored.instances[1].to_world * Vec4(p, 1);
+      EXPECT_LT(max_abs(left * Vec3(-1, 1, 1) - right), 1e-6f);
+      EXPECT_LT(max_abs(left), 1);
+      EXPECT_LT(left.x, 0);
+    }
+  }
+}
+
+TEST(Build, boxes_and_quads_face_where_they_say) {
+  Scene scene;
+  const uint32_t grey = add_diffuse(scene, Rgb(0.5f));
+  add_quad(scene, {1, 2, 3}, {2, 0, 0}, {0, 0, -3}, grey);
+  add_box(scene, {1, 1, 1}, {3, 4, 5}, grey);
+  add_box(scene, {1, 1, 1}, {3, 4, 5}, grey, true);
+  for (const glm::uvec3& t : scene.meshes[0].triangles) EXPECT_EQ(face(scene.meshes[0], t).first, Vec3(0, 6, 0));
+  for (const size_t i : {1, 2})
+    for (const glm::uvec3& t : scene.meshes[i].triangles) {
+      const auto [n, p] = face(scene.meshes[i], t);
+      EXPECT_GT(glm::dot(n, p - Vec3(2, 2.5f, 3)) * (i == 1 ? 1 : -1), 0);
+    }
+}
+
+}  // namespace
+}  // namespace ajar

@@ -1,0 +1,107 @@
+// What finish derives: bounds, the choice of light, and refusals.
+#include <gtest/gtest.h>
+
+#include "ajar/core/error.h"
+#include "lights.h"
+
+namespace ajar {
+namespace {
+
+using kit::placed;
+
+TEST(Finish, EmptySceneIsFinite) {
+  Scene scene;
+  finish(scene);
+  EXPECT_TRUE(is_finite(scene.center));
+  EXPECT_EQ(scene.radius, 1);
+  EXPECT_EQ(scene.light_choice.size(), 0u);
+}
+
+TEST(Finish, BoundsHoldEverything) {
+  Scene scene;
+  kit::add_mesh(scene, kit::rectangle(placed(1, {2, 1, 1}, {5, 0, 0})));
+  kit::add_shape(scene, ShapeKind::sphere, placed(2, Vec3(1.5f), {-4, 1, 0}));
+  kit::add_shape(scene, ShapeKind::disk, placed(0.5f, {1, 3, 1}, {0, 6, 1}));
+  kit::add_shape(scene, ShapeKind::cylinder, placed(2, {1, 0.5f, 4}, {0, -3, 2}));
+  const Mesh solid = kit::icosphere_like();
+  const uint32_t in_group = kit::add_mesh(scene, solid);
+  scene.shapes[in_group].group = 0;
+  scene.groups = 1;
+  const Mat4 m = placed(1, {-1, 2, 1}, {3, 4, -7});
+  scene.instances.push_back({0, m, glm::inverse(m)});
+  finish(scene);
+  const auto inside = [&](const glm::dvec3& p) { return glm::distance(Vec3(p), scene.center) <= scene.radius; };
+  for (uint32_t id = 1; id <= 3; ++id)
+    for (uint32_t i = 0; i < 500; ++i) {
+      const Vec2 uv = kit::random2(i, id);
+      EXPECT_TRUE(inside(kit::map(scene.shapes[id].to_world, kit::unit_object(scene.shapes[id].kind, uv.x, uv.y).p)));
+    }
+  for (const Vec3& p : scene.meshes[0].positions) EXPECT_TRUE(inside(p));
+  for (const Vec3& p : solid.positions) EXPECT_TRUE(inside(kit::map(m, p)));
+  EXPECT_LT(scene.radius, 15);
+}
+
+TEST(Finish, BoundsAreTightForOneSphere) {
+  Scene scene;
+  kit::add_shape(scene, ShapeKind::disk, placed(0.3f, Vec3(2), {1e3f, 0, 0}));
+  finish(scene);
+  EXPECT_LT(scene.radius, 2.9f);
+  EXPECT_NEAR(scene.center.x, 1e3f, 1e-3f);
+}
+
+TEST(Finish, LightsAreChosenByPowerTimesWeight) {
+  Scene scene;
+  const uint32_t a = kit::add_mesh(scene, kit::rectangle(placed(0, Vec3(1), {0, 0, 0})));
+  const uint32_t b = kit::add_mesh(scene, kit::rectangle(placed(0, Vec3(2), {0, 0, 5})));
+  Mesh flat = kit::rectangle(glm::scale(Mat4(1), Vec3(1, 0, 1)));
+  const uint32_t c = kit::add_mesh(scene, flat), d = kit::add_mesh(scene, kit::rectangle(Mat4(1)));
+  kit::light_up(scene, a, Rgb(6));
+  kit::light_up(scene, b, Rgb(1));
+  kit::light_up(scene, c, Rgb(1e9f));
+  kit::light_up(scene, d, Rgb(0));
+  scene.lights[1].sampling_weight = 3;
+  finish(scene);
+  EXPECT_NEAR(scene.light_choice.pdf(0), 1.0 / 3, 1e-5);
+  EXPECT_NEAR(scene.light_choice.pdf(1), 2.0 / 3, 1e-5);
+  EXPECT_EQ(scene.light_choice.pdf(2), 0);  // no area
+  EXPECT_EQ(scene.light_choice.pdf(3), 0);  // black
+}
+
+TEST(Finish, DarkLightsAreChosenUniformly) {
+  Scene scene;
+  for (int i = 0; i < 2; ++i) kit::light_up(scene, kit::add_mesh(scene, kit::rectangle(Mat4(1))), Rgb(0));
+  finish(scene);
+  EXPECT_EQ(scene.light_choice.pdf(0), 0.5f);
+}
+
+// A dim light among bright ones keeps its chance.
+TEST(Finish, DimLightsAreNotForgotten) {
+  Scene scene;
+  for (const float l : {1e8f, 1e-6f, 1e12f})
+    kit::light_up(scene, kit::add_mesh(scene, kit::rectangle(Mat4(1))), Rgb(l));
+  finish(scene);
+  EXPECT_GT(scene.light_choice.pdf(1), 0);
+}
+
+TEST(Finish, RefusesNonsense) {
+  Scene scene;
+  Light light;
+  light.kind = LightKind::spot;
+  light.to_world = glm::scale(Mat4(1), Vec3(1, 0, 1));
+  kit::add_light(scene, light);
+  EXPECT_THROW(finish(scene), Error);
+  Scene far;
+  kit::add_mesh(far, kit::rectangle(placed(0, Vec3(1e30f), {0, 0, 0})));
+  EXPECT_THROW(finish(far), Error);
+  Scene sky;
+  sky.images.push_back(kit::float_image(4, 2, [](int x, int y) { return x == 2 && y == 1 ? -1.0f : 1.0f; }));
+  try {
+    make_environment(sky, 0, 1);
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("made: pixel (2, 1)"), std::string::npos) << e.what();
+  }
+}
+
+}  // namespace
+}  // namespace ajar

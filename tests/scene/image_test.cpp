@@ -1,0 +1,144 @@
+// Reading images: every common format, colour spaces, alpha, and refusals of damaged files.
+#include <OpenImageIO/imageio.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "ajar/core/error.h"
+#include "ajar/scene/texture.h"
+
+namespace ajar {
+namespace {
+
+// A folder of its own for each test, gone afterwards.
+class ImageFile : public testing::Test {
+ protected:
+  std::filesystem::path folder;
+  void SetUp() override {
+    folder = std::filesystem::path(testing::TempDir()) /
+             (std::string("ajar-image-") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(folder);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder); }
+
+  template <class T>
+  std::string write(const std::string& name, int width, int height, int channels, OIIO::TypeDesc type,
+                    const std::vector<T>& values, OIIO::TypeDesc stored = OIIO::TypeDesc::UNKNOWN) {
+    const std::string path = (folder / name).string();
+    auto out = OIIO::ImageOutput::create(path);
+    if (!out) throw std::runtime_error("cannot write " + name);
+    OIIO::ImageSpec spec(width, height, channels, stored == OIIO::TypeDesc::UNKNOWN ? type : stored);
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+    spec.attribute("CompressionQuality", 100);
+    EXPECT_TRUE(out->open(path, spec)) << name;
+    EXPECT_TRUE(out->write_image(type, values.data())) << name;
+    out->close();
+    return path;
+  }
+};
+
+float decode_srgb(int byte) {
+  const float x = float(byte) / 255;
+  return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f);
+}
+
+// Rows of red, green, blue and grey: which end is up, which channel is which.
+TEST_F(ImageFile, EightBitFormats) {
+  constexpr int w = 16, h = 32;
+  std::vector<uint8_t> pixels;
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x)
+      for (int c = 0; c < 3; ++c) pixels.push_back(y < h / 2 ? (c == 0 ? 200 : 50) : (c == 2 ? 120 : 30));
+  for (const char* name : {"a.png", "a.jpg", "a.tga", "a.bmp", "a.tif", "with space.PNG"}) {
+    const Image image = load_image(write(name, w, h, 3, OIIO::TypeDesc::UINT8, pixels), false);
+    EXPECT_EQ(image.width, w);
+    EXPECT_EQ(image.height, h);
+    EXPECT_EQ(image.channels, 3) << name;
+    EXPECT_EQ(image.bytes.size(), size_t(w * h * 3)) << name;
+    EXPECT_TRUE(image.floats.empty() && image.alpha.empty());
+    const float tolerance = std::string(name) == "a.jpg" ? 0.02f : 1e-6f;
+    EXPECT_NEAR(texel(image, 3, 2).x, decode_srgb(200), tolerance) << name;
+    EXPECT_NEAR(texel(image, 3, 2).y, decode_srgb(50), tolerance) << name;
+    EXPECT_NEAR(texel(image, 3, 29).z, decode_srgb(120), tolerance) << name;
+    const Image raw = load_image((folder / name).string(), true);
+    EXPECT_NEAR(texel(raw, 3, 2).x, 200 / 255.0f, 0.02f) << name;
+    const Image gamma = load_image((folder / name).string(), false, 3);
+    EXPECT_NEAR(texel(gamma, 3, 2).x, std::pow(200 / 255.0f, 3.0f), 0.02f) << name;
+  }
+}
+
+TEST_F(ImageFile, GreyAlphaAndSixteenBit) {
+  const Image grey = load_image(write<uint8_t>("g.png", 2, 1, 1, OIIO::TypeDesc::UINT8, {0, 188}), false);
+  EXPECT_EQ(grey.channels, 1);
+  EXPECT_EQ(texel(grey, 1, 0), Rgb(decode_srgb(188)));
+  const Image la = load_image(write<uint8_t>("la.png", 2, 1, 2, OIIO::TypeDesc::UINT8, {10, 0, 188, 128}), false);
+  EXPECT_EQ(la.channels, 1);
+  EXPECT_EQ(la.alpha, (std::vector<uint8_t>{0, 128}));
+  EXPECT_EQ(texel(la, 0, 0).x, decode_srgb(10));  // not multiplied by alpha
+  const Image rgba = load_image(write<uint8_t>("rgba.png", 1, 1, 4, OIIO::TypeDesc::UINT8, {100, 150, 200, 64}), false);
+  EXPECT_EQ(rgba.channels, 3);
+  EXPECT_EQ(rgba.alpha, std::vector<uint8_t>{64});
+  EXPECT_EQ(texel(rgba, 0, 0), Rgb(decode_srgb(100), decode_srgb(150), decode_srgb(200)));
+  const Image opaque = load_image(write<uint8_t>("o.png", 1, 1, 4, OIIO::TypeDesc::UINT8, {1, 2, 3, 255}), false);
+  EXPECT_TRUE(opaque.alpha.empty());
+  const Image deep = load_image(write<uint16_t>("d.png", 1, 1, 3, OIIO::TypeDesc::UINT16, {25700, 0, 65535}), false);
+  EXPECT_NEAR(texel(deep, 0, 0).x, decode_srgb(100), 1e-6f);
+  EXPECT_EQ(texel(deep, 0, 0).z, 1);
+}
+
+TEST_F(ImageFile, FloatFormatsAreLinear) {
+  const std::vector<float> values{0.25f, 2, 1000, 1e-3f, 0.5f, 1};
+  for (const char* name : {"f.exr", "f.hdr", "f.tif"}) {
+    const Image image = load_image(write(name, 2, 1, 3, OIIO::TypeDesc::FLOAT, values), false);
+    EXPECT_TRUE(image.bytes.empty());
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(texel(image, 0, 0)[c] / values[size_t(c)], 1, std::string(name) == "f.hdr" ? 1 : 1e-6) << name;
+    EXPECT_NEAR(texel(image, 0, 0).z, 1000, 10) << name;
+  }
+  const Image half = load_image(write("h.exr", 2, 1, 3, OIIO::TypeDesc::FLOAT, values, OIIO::TypeDesc::HALF), false);
+  EXPECT_NEAR(texel(half, 0, 0).x, 0.25f, 1e-6f);
+}
+
+TEST_F(ImageFile, DamagedFilesAreErrors) {
+  EXPECT_THROW(load_image((folder / "missing.png").string(), false), Error);
+  std::ofstream(folder / "text.png") << "no image at all";
+  EXPECT_THROW(load_image((folder / "text.png").string(), false), Error);
+  std::ofstream(folder / "empty.exr") << "";
+  EXPECT_THROW(load_image((folder / "empty.exr").string(), false), Error);
+  std::vector<uint8_t> noise(64 * 64 * 3);
+  for (size_t i = 0; i < noise.size(); ++i) noise[i] = uint8_t(i * i * 31 + i * 7);
+  for (const char* name : {"cut.png", "cut.exr", "cut.tif", "cut.tga", "cut.bmp", "cut.jpg", "cut.hdr"}) {
+    const std::string path = write(name, 64, 64, 3, OIIO::TypeDesc::UINT8, noise,
+                                   std::string(name) == "cut.exr" ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::UINT8);
+    std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
+    EXPECT_THROW(load_image(path, false), Error) << name;
+  }
+}
+
+// The message says where.
+TEST_F(ImageFile, NonsenseTexelsAreErrors) {
+  for (const float bad : {-1.0f, infinity, std::nanf("")}) {
+    std::vector<float> values(3 * 4 * 3, 0.5f);
+    values[size_t((1 * 4 + 2) * 3 + 1)] = bad;
+    const std::string path = write("bad.exr", 4, 3, 3, OIIO::TypeDesc::FLOAT, values);
+    try {
+      load_image(path, false);
+      ADD_FAILURE() << bad;
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find("bad.exr: pixel (2, 1)"), std::string::npos) << e.what();
+    }
+    if (bad < 0) {
+      EXPECT_EQ(texel(load_image(path, true), 2, 1).y, bad);  // raw: a displacement may be negative
+    }
+  }
+}
+
+// A header that promises more than memory holds.
+TEST_F(ImageFile, AbsurdSizesAreErrors) {
+  std::ofstream(folder / "huge.hdr") << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 200000 +X 200000\n";
+  EXPECT_THROW(load_image((folder / "huge.hdr").string(), false), Error);
+}
+
+}  // namespace
+}  // namespace ajar

@@ -1,0 +1,148 @@
+// Numbers and spectra become linear RGB.
+#include "scene/load/loader.h"
+#include "scene_text.h"
+
+namespace ajar {
+namespace {
+
+using namespace kit;
+
+// The colour as a reflectance and as a radiance.
+Rgb reflectance(const std::string& element) {
+  return load_inside("<bsdf type='diffuse'>" + element + "</bsdf>").materials[0].reflectance.value;
+}
+Rgb radiance(const std::string& element) {
+  return load_inside("<emitter type='constant'>" + element + "</emitter>").lights[0].radiance.value;
+}
+std::string flat(const std::string& value) { return "<spectrum name='radiance' value='" + value + "'/>"; }
+
+TEST(Numbers, AreReadWhollyOrNotAtAll) {
+  EXPECT_EQ(to_number("1.42138e-007"), 1.42138e-7);
+  EXPECT_EQ(to_number(" +.5 "), 0.5);
+  EXPECT_EQ(to_number("1."), 1.0);
+  EXPECT_EQ(to_number("-0"), -0.0);
+  EXPECT_EQ(to_number("1e-999"), 0.0);
+  for (const char* text : {"", " ", "1,5", "1 2", "nan", "inf", "-inf", "1e999", "0x10", "1.0f", "--1", "e5", "++1"})
+    EXPECT_FALSE(to_number(text)) << text;
+  EXPECT_EQ(to_numbers("1, 2 3,4\n\t5")->size(), 5u);
+  EXPECT_EQ(to_numbers("")->size(), 0u);
+  EXPECT_FALSE(to_numbers("1, x"));
+}
+
+TEST(Colour, RgbForms) {
+  EXPECT_RGB(reflectance("<rgb name='reflectance' value='0.1, 0.2 0.3'/>"), 0.1, 0.2, 0.3, 1e-6);
+  EXPECT_RGB(reflectance("<rgb name='reflectance' value='0.25'/>"), 0.25, 0.25, 0.25, 1e-6);
+  EXPECT_RGB(reflectance("<rgb name='reflectance' value='#ff0080'/>"), 1, 0, 128 / 255.0, 1e-6);
+  EXPECT_RGB(reflectance("<srgb name='reflectance' value='#ff0080'/>"), 1, 0, 0.215861, 1e-5);
+  EXPECT_RGB(reflectance("<srgb name='reflectance' value='0.5, 0, 1'/>"), 0.214041, 0, 1, 1e-5);
+  EXPECT_RGB(reflectance("<spectrum name='reflectance' value='0.3'/>"), 0.3, 0.3, 0.3, 1e-6);
+  EXPECT_RGB(reflectance("<spectrum name='reflectance' value='0.3, 0.2, 0.1'/>"), 0.3, 0.2, 0.1, 1e-6);
+  EXPECT_RGB(reflectance("<float name='reflectance' value='0.4'/>"), 0.4, 0.4, 0.4, 1e-6);
+}
+
+TEST(Colour, ReferenceToAColour) {
+  EXPECT_RGB(load_inside("<spectrum id='c' value='0.3'/><bsdf type='diffuse'><ref name='reflectance' id='c'/></bsdf>")
+                 .materials[0].reflectance.value,
+             0.3, 0.3, 0.3, 1e-6);
+}
+
+TEST(Colour, FlatSpectrumIsGrey) {
+  EXPECT_RGB(reflectance("<spectrum name='reflectance' value='300:0.42, 900:0.42'/>"), 0.42, 0.42, 0.42, 1e-6);
+  EXPECT_RGB(reflectance("<spectrum name='reflectance' filename='flat.spd'/>"), 0.25, 0.25, 0.25, 1e-6);
+  EXPECT_NEAR(luminance(radiance(flat("300:3, 900:3"))), 3, 2e-3);
+  EXPECT_RGB(radiance(flat("3")), 3, 3, 3, 1e-6);
+}
+
+TEST(Colour, EqualEnergyLightIsWarm) {  // E in sRGB: XYZ (1, 1, 1)
+  EXPECT_RGB(radiance(flat("300:1, 900:1")), 1.2048, 0.9484, 0.9087, 4e-3);
+}
+
+TEST(Colour, ListIsLinearBetweenAndZeroOutside) {
+  EXPECT_RGB(rgb_of_list({{700, 0}, {400, 0}, {550, 1}}, Colour::ratio),  // sorted first
+             rgb_of_list({{400, 0}, {475, 0.5}, {550, 1}, {625, 0.5}, {700, 0}}, Colour::ratio).x,
+             rgb_of_list({{400, 0}, {475, 0.5}, {550, 1}, {625, 0.5}, {700, 0}}, Colour::ratio).y,
+             rgb_of_list({{400, 0}, {475, 0.5}, {550, 1}, {625, 0.5}, {700, 0}}, Colour::ratio).z, 1e-5);
+  const Rgb left = rgb_of_list({{300, 1}, {555, 1}}, Colour::ratio), right = rgb_of_list({{555.0001, 1}, {900, 1}}, Colour::ratio);
+  EXPECT_RGB(left + right, 1, 1, 1, 1e-4);
+  EXPECT_RGB(rgb_of_list({{100, 1}, {200, 1}}, Colour::ratio), 0, 0, 0, 0);
+}
+
+// The Cornell box's walls (Cornell University Program of Computer Graphics, 1998), in the coarse form that scene files
+// have, against the RGB values that they are usually given.
+TEST(Colour, CornellBoxWalls) {
+  EXPECT_RGB(reflectance("<spectrum name='reflectance' value='400:0.343, 404:0.445, 408:0.551, 412:0.624, 416:0.665, "
+                         "420:0.687, 424:0.708, 428:0.723, 432:0.715, 436:0.71, 440:0.745, 444:0.758, 448:0.739, 452:0.767, "
+                         "456:0.777, 460:0.765, 500:0.74, 550:0.72, 600:0.73, 650:0.74, 700:0.737'/>"),
+             0.725, 0.71, 0.70, 0.05);
+  const Rgb red = reflectance("<spectrum name='reflectance' value='400:0.04, 500:0.06, 570:0.05, 600:0.3, 620:0.53, 650:0.63, "
+                              "700:0.64'/>");
+  EXPECT_GT(red.x, 6 * red.y);
+  EXPECT_GT(red.x, 6 * red.z);
+}
+
+TEST(Colour, BlackBody) {
+  // 6504 K is nearly the white of D65; Planck's law at 555 nm and 5000 K: 1.1e4 W/(m^2 sr nm)
+  const Rgb white = rgb_of_blackbody(6504);
+  EXPECT_NEAR(white.x / white.y, 1, 0.04);
+  EXPECT_NEAR(white.z / white.y, 1, 0.04);
+  EXPECT_NEAR(luminance(rgb_of_blackbody(5000)), 1.24e4, 0.08e4);
+  const Rgb warm = rgb_of_blackbody(2700);
+  EXPECT_GT(warm.x, 3 * warm.z);
+  EXPECT_RGB(radiance("<blackbody name='radiance' temperature='5000K' scale='1e-4'/>") / (rgb_of_blackbody(5000) * 1e-4f),
+             1, 1, 1, 1e-5);
+  EXPECT_RGB(radiance("<spectrum name='radiance' type='blackbody'><float name='temperature' value='5000'/></spectrum>") /
+                 rgb_of_blackbody(5000),
+             1, 1, 1, 1e-5);
+}
+
+TEST(Colour, SpectrumPlugins) {
+  const auto plugin = [](const std::string& type, const std::string& inside) {
+    return "<spectrum name='reflectance' type='" + type + "'>" + inside + "</spectrum>";
+  };
+  EXPECT_RGB(reflectance(plugin("uniform", "<float name='value' value='.3'/>")), 0.3, 0.3, 0.3, 1e-6);
+  EXPECT_RGB(reflectance(plugin("srgb", "<rgb name='color' value='.1 .2 .3'/>")), 0.1, 0.2, 0.3, 1e-6);
+  EXPECT_RGB(reflectance(plugin("rawconstant", "<rgb name='value' value='.1 .2 .3'/>")), 0.1, 0.2, 0.3, 1e-6);
+  EXPECT_RGB(reflectance(plugin("d65", "<float name='scale' value='.5'/>")), 0.5, 0.5, 0.5, 1e-6);
+  EXPECT_RGB(reflectance(plugin("irregular", "<string name='wavelengths' value='300, 900'/>"
+                                             "<string name='values' value='.5, .5'/>")), 0.5, 0.5, 0.5, 1e-6);
+  EXPECT_RGB(reflectance(plugin("regular", "<float name='wavelength_min' value='300'/><float name='wavelength_max' value='900'/>"
+                                           "<string name='values' value='.5, .5'/>")), 0.5, 0.5, 0.5, 1e-6);
+}
+
+TEST(Colour, ImpossibleOnesAreRepairedAloud) {
+  Scene s = load_inside("<bsdf type='diffuse'><rgb name='reflectance' value='-0.1, 0.5, 2'/></bsdf>");
+  EXPECT_RGB(s.materials[0].reflectance.value, 0, 0.5, 1, 1e-6);
+  EXPECT_TRUE(says(s.notes, "negative"));
+  EXPECT_TRUE(says(s.notes, "reflectance above 1"));
+  EXPECT_RGB(radiance("<rgb name='radiance' value='100, 20, 3'/>"), 100, 20, 3, 1e-6);
+}
+
+TEST(Colour, WrongOnesAreErrors) {
+  const auto error = [](const std::string& element) { return error_of("<bsdf type='diffuse'>" + element + "</bsdf>"); };
+  EXPECT_SAYS(error("<rgb name='reflectance' value='1, 2'/>"), "should be one number, three or #rrggbb");
+  EXPECT_SAYS(error("<rgb name='reflectance' value='#12345'/>"), "#rrggbb");
+  EXPECT_SAYS(error("<rgb name='reflectance' value='#12345g'/>"), "#rrggbb");
+  EXPECT_SAYS(error("<rgb name='reflectance'/>"), "needs value");
+  EXPECT_SAYS(error("<rgb name='reflectance' value='nan'/>"), "should be one number");
+  EXPECT_SAYS(error("<rgb name='reflectance' value='1e39'/>"), "beyond the range");
+  EXPECT_SAYS(error("<spectrum name='reflectance' value='400:, 500:1'/>"), "wavelength:value");
+  EXPECT_SAYS(error("<spectrum name='reflectance' value='-5:1'/>"), "out of range");
+  EXPECT_SAYS(error("<spectrum name='reflectance' filename='none.spd'/>"), "there is no file");
+  EXPECT_SAYS(error("<spectrum name='reflectance' filename='empty.obj'/>"), "holds no wavelengths");
+  EXPECT_SAYS(error("<spectrum name='reflectance' filename='fragment.xml'/>"), "wavelength and value");
+  EXPECT_SAYS(error("<blackbody name='reflectance' temperature='-1'/>"), "temperature");
+  EXPECT_SAYS(error("<point name='reflectance' x='1'/>"), "is expected here");
+}
+
+TEST(Colour, NamesOfSubstances) {
+  EXPECT_EQ(find_dielectric("BK7"), 1.5046);
+  EXPECT_EQ(find_dielectric("water_ice"), 1.31);
+  EXPECT_FALSE(find_dielectric("porridge"));
+  ASSERT_NE(find_metal("Au"), nullptr);
+  EXPECT_RGB(find_metal("Au")->eta, 0.143, 0.375, 1.4425, 1e-3);
+  EXPECT_EQ(find_metal("none")->k, Rgb(1));
+  EXPECT_EQ(find_metal("Unobtainium"), nullptr);
+}
+
+}  // namespace
+}  // namespace ajar

@@ -1,0 +1,241 @@
+// Names, parameters, includes, references: what happens before a plugin is looked at.
+#include <filesystem>
+#include <fstream>
+
+#include "scene/load/node.h"
+#include "scene_text.h"
+
+namespace ajar {
+namespace {
+
+using namespace kit;
+
+const std::string ball = "<shape type='sphere'><ref id='m'/></shape>";
+
+float grey(const Scene& scene) { return scene.materials[scene.shapes.at(0).material].reflectance.value.x; }
+
+LoadOptions define(const std::string& name, const std::string& value) {
+  LoadOptions options;
+  options.defines[name] = value;
+  return options;
+}
+
+TEST(Names, BothSpellingsAreOne) {
+  const std::pair<const char*, const char*> names[] = {
+      {"toWorld", "to_world"},         {"to_world", "to_world"},
+      {"intIOR", "int_ior"},           {"extIOR", "ext_ior"},
+      {"alphaU", "alpha_u"},           {"cropOffsetX", "crop_offset_x"},
+      {"diffuseReflectance", "diffuse_reflectance"}, {"p0", "p0"},
+      {"color0", "color0"},            {"toUV", "to_uv"},
+      {"sigmaA", "sigma_a"},           {"Rectangle", "rectangle"},
+      {"", ""},                        {"principalPointOffsetX", "principal_point_offset_x"}};
+  for (const auto& [theirs, ours] : names) EXPECT_EQ(snake_case(theirs), ours);
+}
+
+TEST(Names, MayBeMixedInOneElement) {
+  const Scene s = load_inside(
+      "<bsdf type='roughplastic' id='m'><float name='intIOR' value='1.6'/><float name='ext_ior' value='1'/>"
+      "<rgb name='diffuseReflectance' value='.1 .2 .3'/><rgb name='specular_reflectance' value='.5'/></bsdf>" + ball);
+  const Material& m = s.materials[0];
+  EXPECT_FLOAT_EQ(m.ior, 1.6f);
+  EXPECT_RGB(m.reflectance.value, 0.1, 0.2, 0.3, 1e-6);
+  EXPECT_RGB(m.specular.value, 0.5, 0.5, 0.5, 1e-6);
+}
+
+TEST(Parameters, DefaultIsPutInAndOverruled) {
+  const std::string text =
+      "<default name='r' value='0.25'/><bsdf type='diffuse' id='m'><rgb name='reflectance' value='$r'/></bsdf>" + ball;
+  EXPECT_FLOAT_EQ(grey(load_inside(text)), 0.25f);
+  EXPECT_FLOAT_EQ(grey(load_inside(text, define("r", "0.75"))), 0.75f);
+}
+
+TEST(Parameters, FirstDefaultCounts) {
+  EXPECT_FLOAT_EQ(grey(load_inside("<default name='r' value='0.25'/><default name='r' value='0.5'/>"
+                                   "<bsdf type='diffuse' id='m'><rgb name='reflectance' value='$r'/></bsdf>" + ball)),
+                  0.25f);
+}
+
+TEST(Parameters, StandInAnyAttributeAndInsideText) {
+  const Scene s = load_inside(
+      "<default name='kind' value='diffuse'/><default name='n' value='m'/><default name='part' value='.2'/>"
+      "<default name='partial' value='.4'/><integrator type='$kind'/>"
+      "<bsdf type='$kind' id='$n'><rgb name='reflectance' value='$part, $partial, 0$part'/></bsdf>" + ball);
+  EXPECT_RGB(s.materials[0].reflectance.value, 0.2, 0.4, 0.2, 1e-6);
+  EXPECT_EQ(s.hints.integrator, "diffuse");
+}
+
+TEST(Parameters, DefaultMayNameAnother) {
+  EXPECT_FLOAT_EQ(grey(load_inside("<default name='a' value='0.125'/><default name='b' value='$a'/>"
+                                   "<bsdf type='diffuse' id='m'><rgb name='reflectance' value='$b'/></bsdf>" + ball)),
+                  0.125f);
+}
+
+TEST(Parameters, DefaultBelowItsUseIsFound) {
+  EXPECT_FLOAT_EQ(grey(load_inside("<bsdf type='diffuse' id='m'><rgb name='reflectance' value='$grey'/></bsdf>" + ball +
+                                   "<include filename='fragment.xml'/>")),
+                  0.3f);
+}
+
+TEST(Parameters, UnknownOnesAreErrors) {
+  std::string e = error_of("<default name='known' value='1'/>\n<integrator type='$nobody'/>");
+  EXPECT_SAYS(e, "test.xml:3: <integrator>: the parameter $nobody has no value");
+  EXPECT_SAYS(e, "known are known");
+  e = error_of("<default name='known' value='1'/>", define("unknown", "2"));
+  EXPECT_SAYS(e, "-D unknown");
+  EXPECT_SAYS(e, "known are known");
+  EXPECT_EQ(error_of("<default name='known' value='1'/>", define("known", "2")), "");
+}
+
+TEST(Parameters, ExplosionIsStopped) {
+  std::string text = "<default name='p0' value='xxxxxxxxxxxxxxxx'/>";
+  for (char c = 'a'; c < 'z'; ++c) {
+    const std::string before = c == 'a' ? "$p0" : std::string("$q") + char(c - 1);
+    text += "<default name='q" + std::string(1, c) + "' value='" + before + before + "'/>";
+  }
+  EXPECT_SAYS(error_of(text), "more than a million characters");
+}
+
+TEST(References, PositionalNamedForwardAndAlias) {
+  const std::string m = "<bsdf type='diffuse' id='m'><rgb name='reflectance' value='0.5'/></bsdf>";
+  EXPECT_FLOAT_EQ(grey(load_inside(m + ball)), 0.5f);
+  EXPECT_FLOAT_EQ(grey(load_inside(ball + m)), 0.5f);
+  EXPECT_FLOAT_EQ(grey(load_inside(m + "<shape type='sphere'><ref name='bsdf' id='m'/></shape>")), 0.5f);
+  EXPECT_FLOAT_EQ(grey(load_inside(m + "<alias id='m' as='n'/><shape type='sphere'><ref id='n'/></shape>")), 0.5f);
+}
+
+TEST(References, BsdfNamedTwiceIsReadOnce) {
+  const Scene s = load_inside("<bsdf type='diffuse' id='m'/>" + ball + ball);
+  EXPECT_EQ(s.materials.size(), 1u);
+  EXPECT_EQ(s.shapes[0].material, s.shapes[1].material);
+}
+
+TEST(References, WrongOnesAreErrors) {
+  EXPECT_SAYS(error_of("\n\n" + ball), "test.xml:4: <ref id=\"m\">: nothing in the scene has the id \"m\"");
+  EXPECT_SAYS(error_of("<shape type='sphere'><ref/></shape>"), "needs id");
+  EXPECT_SAYS(error_of("<bsdf type='diffuse' id='m'/>\n<bsdf type='diffuse' id='m'/>"), "taken already at test.xml:2");
+  EXPECT_SAYS(error_of("<alias id='a' as='b'/><alias id='b' as='a'/><shape type='sphere'><ref id='a'/></shape>"),
+              "circle");
+}
+
+TEST(References, CyclesAreErrors) {
+  EXPECT_SAYS(error_of("<bsdf type='twosided' id='a'><ref id='a'/></bsdf>"), "contains itself");
+  EXPECT_SAYS(error_of("<bsdf type='mask' id='a'><ref id='b'/></bsdf><bsdf type='mask' id='b'><ref id='a'/></bsdf>"),
+              "contains itself");
+  EXPECT_SAYS(error_of("<texture type='scale' id='t'><ref id='t'/></texture>"
+                       "<bsdf type='diffuse'><ref name='reflectance' id='t'/></bsdf>"),
+              "contains itself");
+  EXPECT_SAYS(error_of("<shape type='shapegroup' id='g'><shape type='instance'><ref id='g'/></shape></shape>"),
+              "not supported");
+}
+
+// Elements that name others twice, again and again, are small in the file and endless to evaluate.
+TEST(References, ExplosionIsStopped) {
+  std::string text = "<bsdf type='null' id='b0'/><texture type='checkerboard' id='t0'/>";
+  for (int i = 1; i < 30; ++i) {
+    const std::string before = std::to_string(i - 1), here = std::to_string(i);
+    text += "<bsdf type='blendbsdf' id='b" + here + "'><ref id='b" + before + "'/><ref id='b" + before + "'/></bsdf>";
+  }
+  EXPECT_SAYS(error_of(text), "more than 64 bsdfs");
+  for (int i = 1; i < 30; ++i) {
+    const std::string before = std::to_string(i - 1), here = std::to_string(i);
+    text = (i == 1 ? "<texture type='checkerboard' id='t0'/>" : text) + "<texture type='scale' id='t" + here +
+           "'><ref id='t" + before + "'/><ref name='scale' id='t" + before + "'/></texture>";
+  }
+  EXPECT_SAYS(error_of(text + "<bsdf type='diffuse'><ref name='reflectance' id='t29'/></bsdf>"),
+              "more than 64 textures");
+}
+
+TEST(Include, BringsElementsAndDefaults) {
+  const std::string use = "<shape type='sphere'><ref id='included'/></shape>";
+  EXPECT_FLOAT_EQ(grey(load_inside("<include filename='fragment.xml'/>" + use)), 0.3f);
+  EXPECT_FLOAT_EQ(grey(load_inside("<include filename='fragment.xml'/>" + use, define("grey", "0.7"))), 0.7f);
+  EXPECT_FLOAT_EQ(grey(load_inside("<default name='grey' value='0.1'/><include filename='fragment.xml'/>" + use)), 0.1f);
+  EXPECT_FLOAT_EQ(grey(load_inside("<default name='f' value='fragment'/><include filename='$f.xml'/>" + use)), 0.3f);
+  EXPECT_FLOAT_EQ(grey(load_inside("<include filename='lone.xml'/><shape type='sphere'><ref id='lone'/></shape>")),
+                  0.6f);
+}
+
+TEST(Include, WrongOnesAreErrors) {
+  EXPECT_SAYS(error_of("\n<include filename='nowhere.xml'/>"), "test.xml:3: <include>: there is no file nowhere.xml");
+  EXPECT_SAYS(error_of("<include/>"), "needs filename");
+  EXPECT_SAYS(error_of("<include filename='cycle.xml'/>"), "cycle.xml includes itself");
+  EXPECT_SAYS(error_of("<include filename='broken.xml'/>"), "broken.xml:3: not well-formed");
+  EXPECT_SAYS(error_of("<include filename='.'/>"), "there is no file");
+}
+
+TEST(Path, AddsAFolder) {
+  const std::string mesh = "<shape type='obj'><string name='filename' value='inner.obj'/></shape>";
+  EXPECT_SAYS(error_of(mesh), "there is no file \"inner.obj\"");
+  EXPECT_EQ(load_inside("<path value='folder'/>" + mesh).shapes.size(), 1u);
+  EXPECT_TRUE(says(load_inside("<path value='nofolder'/>").notes, "there is no folder nofolder"));
+}
+
+TEST(Xml, NoSceneIsAnError) {
+  const auto error = [](const std::string& text) -> std::string {
+    try {
+      load_scene_text(text, "", "a.xml");
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return {};
+  };
+  EXPECT_SAYS(error(""), "holds no XML element");
+  EXPECT_SAYS(error("  \n "), "holds no XML element");
+  EXPECT_SAYS(error("hello"), "holds no XML element");
+  EXPECT_SAYS(error(std::string("\x89PNG\r\n\x1a\n\0\0\0", 11)), "a.xml");
+  EXPECT_SAYS(error("<scene version='3.0.0'>\n<shape"), "a.xml:2: not well-formed XML");
+  EXPECT_SAYS(error("<scene><sensor type='perspective'></scene>"), "not well-formed XML");
+  EXPECT_SAYS(error("<html/>"), "outermost element should be <scene>");
+  EXPECT_SAYS(error("<scene version='3.0.0'/>"), "has no camera: add <sensor");
+  std::string deep = "<scene>";
+  for (int i = 0; i < 100000; ++i) deep += "<bsdf>";
+  EXPECT_NE(error(deep), "");
+  for (int i = 0; i < 100000; ++i) deep += "</bsdf>";
+  EXPECT_SAYS(error(deep + "</scene>"), "nested more than 64 deep");
+}
+
+TEST(Xml, FilesThatAreNoneAreErrors) {
+  const auto error = [](const std::string& path) -> std::string {
+    try {
+      load_scene(path);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return {};
+  };
+  EXPECT_SAYS(error("nowhere/nothing.xml"), "nowhere/nothing.xml: there is no such file");
+  EXPECT_SAYS(error(assets()), "is not a file");
+  EXPECT_SAYS(error("/dev/null"), "is not a file");
+}
+
+TEST(Xml, LinesAreCountedFromOne) {
+  EXPECT_SAYS(error_of("<bsdf type='diffuse'/>\n\n\n<bsdf type='foo'/>"),
+              "test.xml:5: <bsdf type=\"foo\">: unknown bsdf; supported: diffuse, twosided");
+}
+
+TEST(Xml, UnknownElementsAreErrorsOrNotes) {
+  EXPECT_SAYS(error_of("<gadget/>"), "<gadget>: unknown element");
+  EXPECT_TRUE(says(load_inside("<gadget/>", lenient()).notes, "<gadget>"));
+  EXPECT_SAYS(error_of("<bsdf type='diffuse'><hide name='reflectance' value='1'/></bsdf>"), "<hide");
+  EXPECT_TRUE(says(load_inside("<bsdf type='diffuse'><hide name='reflectance' value='1'/></bsdf>", lenient()).notes,
+                   "<hide"));
+}
+
+TEST(Xml, UnusedParametersAreNotedOnce) {
+  const Scene s = load_inside(
+      "<shape type='sphere'><boolean name='caustic_receiver' value='true'/></shape>"
+      "<shape type='sphere'><boolean name='caustic_receiver' value='true'/></shape>");
+  int count = 0;
+  for (const std::string& note : s.notes) count += note.find("caustic_receiver") != note.npos;
+  EXPECT_EQ(count, 1);
+}
+
+TEST(Xml, LastOfTwoParametersCounts) {
+  const Scene s = load_inside(
+      "<bsdf type='roughplastic'><float name='alpha' value='.2'/><float name='alpha' value='.3'/></bsdf>");
+  EXPECT_FLOAT_EQ(s.materials[0].alpha_u.value.x, 0.3f);
+  EXPECT_TRUE(says(s.notes, "more than once"));
+}
+
+}  // namespace
+}  // namespace ajar
