@@ -49,7 +49,7 @@ def main():
     paint.wood(os.path.join(textures, 'floor.png'), (512, 512), 1, (0.33, 0.20, 0.11), (0.72, 0.52, 0.33), 24,
                planks=10)
     paint.wood(os.path.join(textures, 'oak.png'), (512, 256), 2, (0.52, 0.36, 0.20), (0.86, 0.70, 0.48), 10)
-    paint.wood(os.path.join(textures, 'walnut.png'), (384, 192), 3, (0.36, 0.17, 0.09), (0.68, 0.40, 0.23), 8)
+    paint.wood(os.path.join(textures, 'walnut.png'), (384, 192), 3, (0.34, 0.19, 0.11), (0.66, 0.43, 0.26), 8)
     paint.painting(os.path.join(textures, 'lake.png'), 480, 320)
     paint.rug(os.path.join(textures, 'rug.png'), 352, 240)
 

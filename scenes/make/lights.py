@@ -2,14 +2,14 @@
 
 Without FILE: scenes/lights/lights-N.xml. Spheres, disks, rectangles, points and spots at random places of the hall;
 powers differ by a factor of about 1000.
-The total power does not depend on N (it is scaled to 1200 W), so pictures with different N are comparable.
+The total power does not depend on N (it is scaled to 350 W), so pictures with different N are comparable.
 """
 import math
 import os
 import random
 import sys
 
-TOTAL = 1200.0  # watts per colour channel, on average
+TOTAL = 350.0  # watts per colour channel, on average
 
 
 def main():

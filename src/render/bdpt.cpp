@@ -6,95 +6,128 @@
 namespace ajar {
 namespace {
 
-struct Sample {
+// One camera sample with its light subpath, at work.
+struct Work {
   const Job& job;
-  const PixelSample& pixel;
+  Sample& sample;
   Scratch& scratch;
   double light_share = 1;  // of the light walk, for s = 2
-  Rgb value{0};
 };
 
 // Weighs a visible candidate and puts it where it belongs.
-void add(Sample& sample, const Candidate& c, int s, int t) {
-  const float w = float(weight(sample.job.walk.heuristic, c));
+void add(Work& work, const Candidate& c, int s, int t) {
+  const float w = float(weight(work.job.walk.heuristic, c));
   const Rgb weighted = c.value * w;
-  if (!accept(weighted, sample.scratch)) return;
+  if (!accept(weighted, work.sample, work.scratch)) return;
   if (t == 1)
-    sample.scratch.splats->push_back({c.raster, weighted});
+    work.scratch.splats->push_back({c.raster, weighted});
   else
-    sample.value += weighted;
-  if (!sample.scratch.strategies) return;
-  const Vec2 raster = t == 1 ? c.raster : Vec2(sample.pixel.x, sample.pixel.y);
-  sample.scratch.strategies->push_back({s, t, raster, c.value, weighted});
+    work.sample.value += weighted;
+  if (!work.scratch.strategies) return;
+  // What the camera sample found gets its filter here; splats are filtered on the film.
+  const Vec2 raster = t == 1 ? c.raster : Vec2(work.sample.x, work.sample.y);
+  const float filter = t == 1 ? 1 : work.sample.filter;
+  work.scratch.strategies->push_back({s, t, raster, c.value * filter, weighted * filter});
 }
 
-void add_if_visible(Sample& sample, const Candidate& c, int s, int t) {
-  ++sample.scratch.counters.shadow_rays;
-  if (visible(*sample.job.accel, c)) add(sample, c, s, t);
+// Shadow rays are traced many at a time: they do not depend on each other, and the processor overlaps them.
+constexpr size_t most_pending = 64;
+
+void trace_pending(Work& work) {
+  std::vector<Pending>& pending = work.scratch.pending;
+  for (Pending& p : pending) p.lit = visible(*work.job.accel, p.candidate);
+  for (const Pending& p : pending)
+    if (p.lit) add(work, p.candidate, p.s, p.t);
+  work.scratch.counters.shadow_rays += pending.size();
+  pending.clear();
+}
+
+// Room for the next candidate; give_back when it came to nothing.
+Candidate& next_candidate(Work& work, int s, int t) {
+  std::vector<Pending>& pending = work.scratch.pending;
+  if (pending.size() == most_pending) trace_pending(work);
+  Pending& p = pending.emplace_back();
+  p.s = s, p.t = t;
+  return p.candidate;
+}
+void keep_if(Work& work, bool good) {
+  if (!good) work.scratch.pending.pop_back();
 }
 
 // The light subpath, and t = 1 at every vertex. The light itself, s = 1, is left to the camera ray that sees it.
-void trace_light_subpath(Sample& sample, const Vec2& lens) {
-  const Job& job = sample.job;
-  Sampler sampler = make_sampler(job.sampler, job.seed, Side::light, sample.pixel.path, sample.pixel.pass);
-  Subpath& light = sample.scratch.light;
+void trace_light_subpath(Work& work) {
+  const Job& job = work.job;
+  Sampler sampler = make_sampler(job.sampler, job.seed, Side::light, work.sample.path, work.sample.pass);
+  Subpath& light = work.scratch.light;
+  light.n = 0;
   Walk walk;
   if (!start_light(*job.scene, sampler, light, walk)) return;
-  ++sample.scratch.counters.light_paths;
-  ++sample.scratch.counters.light_paths;
+  ++work.scratch.counters.light_paths;
   Surface surface;
   while (light.n < job.walk.max_edges) {
     if (light.n > 1 && !scatter(job.walk, sampler, light, walk)) return;
-    ++sample.scratch.counters.light_rays;
+    ++work.scratch.counters.light_rays;
     if (!step(*job.scene, *job.accel, job.walk, light, walk, surface)) return;
-    sample.light_share = walk.first_share;
-    Candidate c;
-    if (connectable(light[light.n - 1].guide) &&
-        join_camera(*job.scene, lens, light, light.n, sample.light_share, job.walk.light_paths, c))
-      add_if_visible(sample, c, light.n, 1);
+    work.light_share = walk.first_share;
+    if (!connectable(light[light.n - 1].guide)) continue;
+    Candidate& c = next_candidate(work, light.n, 1);
+    keep_if(work, join_camera(*job.scene, work.sample.lens, light, light.n, work.light_share, job.walk.light_paths, c));
   }
 }
 
 // All joins at the camera subpath's last vertex: s = 0 (surface), 1 and more.
-void join_all(Sample& sample, const Surface& surface, Sampler& sampler) {
-  const Job& job = sample.job;
-  const Subpath& camera = sample.scratch.camera;
-  const Subpath& light = sample.scratch.light;
+void join_all(Work& work, const Surface& surface) {
+  const Job& job = work.job;
+  const Subpath& camera = work.scratch.camera;
+  const Subpath& light = work.scratch.light;
   const int t = camera.n;
-  Candidate c;
-  if (join_hit(*job.scene, camera, surface, c)) add(sample, c, 0, t);
+  if (job.scene->shapes[surface.shape].light != none) {
+    Candidate c;
+    if (join_hit(*job.scene, camera, surface, c)) add(work, c, 0, t);
+  }
   if (t > job.walk.max_edges || !connectable(camera[t - 1].guide)) return;
   const double light_paths = job.walk.light_paths;
-  if (!job.scene->lights.empty() && join_light(*job.scene, sampler, camera, t, light_paths, c))
-    add_if_visible(sample, c, 1, t);
+  if (!job.scene->lights.empty()) {
+    Candidate& c = next_candidate(work, 1, t);
+    keep_if(work, join_light(*job.scene, work.sample.sampler, camera, t, light_paths, c));
+  }
   const int most = std::min(light.n, job.walk.max_edges + 1 - t);
-  for (int s = 2; s <= most; ++s)
-    if (connectable(light[s - 1].guide) && join_vertices(light, s, sample.light_share, camera, t, light_paths, c))
-      add_if_visible(sample, c, s, t);
+  for (int s = 2; s <= most; ++s) {
+    if (!connectable(light[s - 1].guide)) continue;
+    Candidate& c = next_candidate(work, s, t);
+    keep_if(work, join_vertices(light, s, work.light_share, camera, t, light_paths, c));
+  }
 }
 
-}  // namespace
+void join_escapes(Work& work, const Walk& walk) {
+  const Subpath& camera = work.scratch.camera;
+  Candidate c;
+  for (const uint32_t light : work.job.scene->infinite_lights)
+    if (join_escape(*work.job.scene, light, camera, walk, c)) add(work, c, 0, camera.n + 1);
+}
 
-Rgb trace_bdpt(const Job& job, const PixelSample& pixel, const Vec2& raster, const Vec2& lens, Sampler& sampler,
-               Scratch& scratch) {
-  Sample sample{job, pixel, scratch};
-  scratch.light.n = 0;
-  trace_light_subpath(sample, lens);
+void trace_one(const Job& job, Sample& sample, Scratch& scratch) {
+  Work work{job, sample, scratch};
+  trace_light_subpath(work);
   Subpath& camera = scratch.camera;
   Walk walk;
-  start_camera(*job.scene, job.walk, raster, lens, camera, walk);
+  start_camera(*job.scene, job.walk, sample.raster, sample.lens, camera, walk);
   Surface surface;
   do {
     ++scratch.counters.camera_rays;
     if (!step(*job.scene, *job.accel, job.walk, camera, walk, surface)) {
-      Candidate c;
-      for (const uint32_t l : job.scene->infinite_lights)
-        if (join_escape(*job.scene, l, camera, walk, c)) add(sample, c, 0, camera.n + 1);
+      join_escapes(work, walk);
       break;
     }
-    join_all(sample, surface, sampler);
-  } while (camera.n <= job.walk.max_edges && scatter(job.walk, sampler, camera, walk));
-  return sample.value;
+    join_all(work, surface);
+  } while (camera.n <= job.walk.max_edges && scatter(job.walk, sample.sampler, camera, walk));
+  trace_pending(work);
+}
+
+}  // namespace
+
+void trace_bdpt(const Job& job, std::span<Sample> samples, Scratch& scratch) {
+  for (Sample& sample : samples) trace_one(job, sample, scratch);
 }
 
 }  // namespace ajar

@@ -2,6 +2,8 @@
 // Leaves: what one path's tracing reads (Job) and writes (Scratch), the same for every integrator.
 #pragma once
 
+#include <span>
+
 #include "ajar/film/pyramid.h"
 #include "ajar/join/connect.h"
 #include "ajar/render/options.h"
@@ -17,33 +19,68 @@ struct Job {
   bool techniques = false;
 };
 
-/// Storage of one thread at work on one chunk; kept from chunk to chunk.
-struct Scratch {
-  Subpath camera, light;
-  Counters counters;
-  uint64_t rejected = 0;
-  std::vector<Splat>* splats = nullptr;         ///< of the chunk
-  std::vector<Strategy>* strategies = nullptr;  ///< of the chunk, null unless asked for
-};
-
-/// One sample of pixel (x, y) of the film in one pass: which numbers it draws and where it looks.
-struct PixelSample {
+/// One camera sample of pixel (x, y) of the film in one pass: where it looks, which numbers it draws, and what it
+/// found.
+struct Sample {
   int x = 0, y = 0;
   uint64_t path = 0;  ///< index of the pixel
   uint32_t pass = 0;
+  Vec2 raster{0}, lens{0};
+  float filter = 1;  ///< what the filter makes of the camera path's radiance
+  Sampler sampler;
+  Rgb value{0};  ///< radiance found by the camera path, unfiltered
 };
 
-/// Traces one sample and returns the radiance of its camera path; splats go to the scratch.
-using Trace = Rgb (*)(const Job&, const PixelSample&, const Vec2& raster, const Vec2& lens, Sampler& camera, Scratch&);
+/// A camera path in flight, for trace_path.
+struct Flight {
+  uint32_t sample = 0;
+  bool found = false, alive = true;
+  bool alone = true;  ///< the last direction could not have come from next-event estimation
+  Vec3 o{0}, d{0};
+  float t_min = 0, t_max = infinity;
+  Hit hit;
+  Vec3 from{0};    ///< where the ray left a surface
+  double pdf = 1;  ///< of its direction, per solid angle
+  Rgb beta{1}, survival{1};
+  Rgb direct{0};  ///< next-event estimation before visibility; black: no shadow ray
+  Vec3 shadow_o{0}, shadow_d{0};
+  float shadow_t_max = 1;
+};
 
-Rgb trace_path(const Job&, const PixelSample&, const Vec2&, const Vec2&, Sampler&, Scratch&);
-Rgb trace_bdpt(const Job&, const PixelSample&, const Vec2&, const Vec2&, Sampler&, Scratch&);
-Rgb trace_light(const Job&, const PixelSample&, const Vec2&, const Vec2&, Sampler&, Scratch&);
+/// A join that waits for its shadow ray, for trace_bdpt.
+struct Pending {
+  Candidate candidate;
+  int s = 0, t = 0;
+  bool lit = false;
+};
+
+/// Storage of one thread at work on one chunk; kept from chunk to chunk.
+struct Scratch {
+  std::vector<Sample> samples;
+  std::vector<Flight> flights;
+  std::vector<Pending> pending;
+  Subpath camera, light;
+  Counters counters;
+  uint64_t rejected = 0;
+  uint64_t rejected_at = no_path;               ///< path of the chunk's first rejected value
+  std::vector<Splat>* splats = nullptr;         ///< of the chunk
+  std::vector<Strategy>* strategies = nullptr;  ///< of the chunk, null unless asked for
+
+  static constexpr uint64_t no_path = ~0ull;
+};
+
+/// Traces samples, in whatever order suits the machine; what each finds depends on itself alone.
+using Trace = void (*)(const Job&, std::span<Sample>, Scratch&);
+
+void trace_path(const Job&, std::span<Sample>, Scratch&);
+void trace_bdpt(const Job&, std::span<Sample>, Scratch&);
+void trace_light(const Job&, std::span<Sample>, Scratch&);
 
 /// Law 6: only finite, non-negative values may go on; others are counted.
-inline bool accept(const Rgb& value, Scratch& scratch) {
+inline bool accept(const Rgb& value, const Sample& sample, Scratch& scratch) {
   if (value.x >= 0 && value.y >= 0 && value.z >= 0 && value.x + value.y + value.z < infinity) return true;
   ++scratch.rejected;
+  if (scratch.rejected_at == Scratch::no_path) scratch.rejected_at = sample.path;
   return false;
 }
 

@@ -34,41 +34,34 @@ constexpr uint32_t batch_chunks = 256;
 struct Batch {
   std::vector<std::vector<Splat>> splats;
   std::vector<std::vector<Strategy>> strategies;
-  std::vector<uint64_t> rejected_at;  // first pixel of each chunk with a rejected value, or none64
+  std::vector<uint64_t> rejected_at;  // path of each chunk's first rejected value
 };
-constexpr uint64_t none64 = ~0ull;
 
-// The filter's sign and size, where they are not 1, belong to what the camera sample found; splats are filtered on the
-// film.
-void weigh_by_filter(std::vector<Strategy>& strategies, size_t from, float weight) {
-  for (size_t i = from; i < strategies.size(); ++i)
-    if (strategies[i].t > 1) strategies[i].raw *= weight, strategies[i].weighted *= weight;
+Sample make_sample(const Job& job, const Film& film, int x, int y) {
+  Sample s;
+  s.x = x, s.y = y;
+  s.path = uint64_t(y) * uint64_t(film.width) + uint64_t(x);
+  s.pass = film.passes;
+  s.sampler = make_sampler(job.sampler, job.seed, Side::camera, s.path, s.pass);
+  const Vec2 centre(float(film.x0 + x) + 0.5f, float(film.y0 + y) + 0.5f);
+  s.raster = centre + ajar::sample(film.filter, s.sampler.next2(), s.filter);
+  if (job.scene->camera.kind == CameraKind::thinlens) s.lens = s.sampler.next2();
+  return s;
 }
 
-void trace_chunk(const Job& job, const Integrator& integrator, Film& film, uint32_t chunk, Scratch& scratch,
-                 uint64_t& rejected_at) {
+void trace_chunk(const Job& job, const Integrator& integrator, Film& film, uint32_t chunk, Scratch& scratch) {
   const int x0 = int(chunk) % tiles_x(film) * tile, y0 = int(chunk) / tiles_x(film) * tile;
-  const bool has_lens = job.scene->camera.kind == CameraKind::thinlens;
-  rejected_at = none64;
+  scratch.rejected_at = Scratch::no_path;
+  scratch.samples.clear();
   for (int y = y0; y < std::min(y0 + tile, film.height); ++y)
-    for (int x = x0; x < std::min(x0 + tile, film.width); ++x) {
-      const uint64_t pixel = uint64_t(y) * uint64_t(film.width) + uint64_t(x);
-      const PixelSample sample{x, y, pixel, film.passes};
-      Sampler sampler = make_sampler(job.sampler, job.seed, Side::camera, pixel, film.passes);
-      float sign = 1;
-      const Vec2 centre(float(film.x0 + x) + 0.5f, float(film.y0 + y) + 0.5f);
-      const Vec2 offset_in_pixel = ajar::sample(film.filter, sampler.next2(), sign);
-      const Vec2 lens = has_lens ? sampler.next2() : Vec2(0);
-      const uint64_t before = scratch.rejected;
-      const size_t first = scratch.strategies ? scratch.strategies->size() : 0;
-      Rgb value = integrator.trace(job, sample, centre + offset_in_pixel, lens, sampler, scratch);
-      if (!accept(value, scratch)) value = Rgb(0);
-      if (scratch.rejected != before && rejected_at == none64) rejected_at = pixel;
-      ++scratch.counters.camera_paths;
-      scratch.counters.zero_paths += is_black(value);
-      film.camera[pixel] = value * sign;
-      if (scratch.strategies) weigh_by_filter(*scratch.strategies, first, sign);
-    }
+    for (int x = x0; x < std::min(x0 + tile, film.width); ++x) scratch.samples.push_back(make_sample(job, film, x, y));
+  integrator.trace(job, scratch.samples, scratch);
+  for (Sample& sample : scratch.samples) {
+    if (!accept(sample.value, sample, scratch)) sample.value = Rgb(0);
+    scratch.counters.zero_paths += is_black(sample.value);
+    film.camera[sample.path] = sample.value * sample.filter;
+  }
+  scratch.counters.camera_paths += scratch.samples.size();
 }
 
 Job make_job(const Scene& scene, const Accel& accel, const RenderOptions& options, const Film& film) {
@@ -87,7 +80,7 @@ Job make_job(const Scene& scene, const Accel& accel, const RenderOptions& option
 
 void note_rejected(RenderStats& stats, const std::vector<uint64_t>& pixels, const Film& film, uint64_t seed) {
   for (const uint64_t p : pixels)
-    if (p != none64 && stats.replay.size() < 5)
+    if (p != Scratch::no_path && stats.replay.size() < 5)
       stats.replay.push_back(fmt::format("pixel {},{} pass {} seed {}", p % uint64_t(film.width),
                                          p / uint64_t(film.width), film.passes, seed));
 }
@@ -147,7 +140,8 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
         batch.strategies[i].clear();
         scratch.splats = &batch.splats[i];
         scratch.strategies = job.techniques ? &batch.strategies[i] : nullptr;
-        trace_chunk(job, integrator, film, from + i, scratch, batch.rejected_at[i]);
+        trace_chunk(job, integrator, film, from + i, scratch);
+        batch.rejected_at[i] = scratch.rejected_at;
       });
       if (film.splats) merge(film, batch.splats);
       if (job.techniques) merge(state.pyramid, film, batch.strategies);

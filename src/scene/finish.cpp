@@ -100,6 +100,19 @@ void set_bounds(Scene& scene) {
   if (radius > 0) scene.radius = radius;
 }
 
+void set_packed(Mesh& mesh) {
+  mesh.packed.clear();
+  mesh.packed.shrink_to_fit();
+  std::vector<PackedVertex> packed(mesh.positions.size());
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, packed.size(), 16384), [&](const auto& r) {
+    for (size_t i = r.begin(); i != r.end(); ++i) {
+      const Vec2 uv = mesh.uvs.empty() ? Vec2(0) : mesh.uvs[i];
+      packed[i] = {mesh.positions[i], uv.x, mesh.normals.empty() ? Vec3(0) : mesh.normals[i], uv.y};
+    }
+  });
+  mesh.packed = std::move(packed);
+}
+
 void set_areas(Mesh& mesh) {
   std::vector<float> areas(mesh.triangles.size());
   tbb::parallel_for(tbb::blocked_range<size_t>(0, areas.size(), 4096), [&](const auto& r) {
@@ -131,6 +144,7 @@ void prepare_light(Scene& scene, uint32_t id) {
 
 void finish(Scene& scene) {
   set_bounds(scene);
+  for (Mesh& mesh : scene.meshes) set_packed(mesh);
   prepare_materials(scene);
   scene.infinite_lights.clear();
   std::vector<float> weights;

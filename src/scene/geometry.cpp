@@ -6,7 +6,8 @@ namespace ajar {
 namespace {
 
 // Offsets are this many times the magnitudes that went into a point: 4 units in the last place of each. The bound of
-// the barycentric sum is 3 (Pharr et al. 2016, section 3.9), the ray tracer's own rounding takes the rest.
+// the barycentric sum is 3 (Pharr et al. 2016, section 3.9); the ray tracer's own rounding takes the rest. tests/scene/
+// offset_test.cpp measures it: a quarter of this hits itself now and then.
 constexpr float error_scale = 0x1p-21f;
 constexpr float least_error = 1e-30f;
 
@@ -32,47 +33,64 @@ Vec3 unit(const Vec3& v, const Vec3& fallback) {
   return scaled / std::sqrt(length2(scaled));
 }
 
-struct Corners {
-  Vec3 p[3];
+struct Triangle {
+  PackedVertex a, b, c;
 };
-Corners corners(const Mesh& mesh, const glm::uvec3& t) {
-  return {{mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]}};
+
+PackedVertex vertex(const Mesh& mesh, uint32_t i) {
+  if (!mesh.packed.empty()) return mesh.packed[i];
+  const Vec2 uv = mesh.uvs.empty() ? Vec2(0) : mesh.uvs[i];
+  return {mesh.positions[i], uv.x, mesh.normals.empty() ? Vec3(0) : mesh.normals[i], uv.y};
 }
 
-float error_of(const Corners& c) {
-  return error_scale * std::max(max_abs(c.p[0]), std::max(max_abs(c.p[1]), max_abs(c.p[2]))) + least_error;
+Triangle triangle_of(const Mesh& mesh, uint32_t prim) {
+  const glm::uvec3 t = mesh.triangles[prim];
+  return {vertex(mesh, t.x), vertex(mesh, t.y), vertex(mesh, t.z)};
 }
 
-// Unit normal. In double: in single precision the normal of a sliver tilts so far that rays along it start on the wrong
-// side.
-Vec3 normal_of(const Corners& c) {
-  const glm::dvec3 p(c.p[0]), n = glm::cross(glm::dvec3(c.p[1]) - p, glm::dvec3(c.p[2]) - p);
-  const double l2 = glm::dot(n, n);
-  return l2 > 0 ? Vec3(n * (1 / std::sqrt(l2))) : Vec3(0, 0, 1);
+float magnitude_of(const Triangle& t) { return std::max(max_abs(t.a.p), std::max(max_abs(t.b.p), max_abs(t.c.p))); }
+
+// Normal and error of slivers. In double: in single precision the normal tilts, and rays along the triangle start on
+// the wrong side. The ray tracer's own normal, in single precision, is off by the square of the edges over the area,
+// and so is the distance that it computes to the far end: slivers need more room.
+void set_sliver_normal(const Triangle& t, Vec3& normal, float& error) {
+  const glm::dvec3 p(t.a.p), e1 = glm::dvec3(t.b.p) - p, e2 = glm::dvec3(t.c.p) - p, n = glm::cross(e1, e2);
+  const double n2 = glm::dot(n, n), edge2 = std::max(glm::dot(e1, e1), glm::dot(e2, e2));
+  if (!(n2 > 0)) return;
+  const double per_length = 1 / std::sqrt(n2), sliver = edge2 * per_length;
+  normal = Vec3(n * per_length);
+  error += error_scale / 16 * float(std::min(sliver, 3e4) * std::sqrt(edge2));
 }
 
-template <class T>
-T interpolate(const std::vector<T>& values, const glm::uvec3& t, const Vec2& bary) {
-  return values[t.x] * (1 - bary.x - bary.y) + values[t.y] * bary.x + values[t.z] * bary.y;
+// Unit normal by the winding, and error.
+void set_normal(const Triangle& t, Vec3& normal, float& error) {
+  error = error_scale * magnitude_of(t) + least_error;
+  const Vec3 e1 = t.b.p - t.a.p, e2 = t.c.p - t.a.p, n = glm::cross(e1, e2);
+  const float n2 = length2(n), edge2 = std::max(length2(e1), length2(e2));
+  if (n2 > 1e-30f && n2 < 1e30f && edge2 * edge2 < 16 * n2)
+    normal = n / std::sqrt(n2);
+  else
+    set_sliver_normal(t, normal, error);
 }
 
 // Position, error, ng and uv of a point of a triangle, in the mesh's space.
-void set_point(const Mesh& mesh, const glm::uvec3& t, const Corners& c, Surface& s) {
+void set_point(const Mesh& mesh, const Triangle& t, Surface& s) {
   const Vec2 b = s.bary;
-  s.p = c.p[0] * (1 - b.x - b.y) + c.p[1] * b.x + c.p[2] * b.y;
-  s.error = error_of(c);
-  s.ng = normal_of(c);
-  s.uv = mesh.uvs.empty() ? b : interpolate(mesh.uvs, t, b);
+  const float a = 1 - b.x - b.y;
+  s.p = t.a.p * a + t.b.p * b.x + t.c.p * b.y;
+  set_normal(t, s.ng, s.error);
+  s.uv = mesh.uvs.empty() ? b : Vec2(t.a.u, t.a.v) * a + Vec2(t.b.u, t.b.v) * b.x + Vec2(t.c.u, t.c.v) * b.y;
 }
 
 // Solves p = p0 + dpdu u + dpdv v on the triangle.
-void set_tangents(const Mesh& mesh, const glm::uvec3& t, const Corners& c, Surface& s) {
+void set_tangents(const Mesh& mesh, const Triangle& t, Surface& s) {
   if (mesh.uvs.empty()) return;
-  const Vec2 a = mesh.uvs[t.y] - mesh.uvs[t.x], b = mesh.uvs[t.z] - mesh.uvs[t.x];
-  const float det = a.x * b.y - a.y * b.x;
-  if (!(std::abs(det) > 1e-8f * (std::abs(a.x * b.y) + std::abs(a.y * b.x)))) return;
-  const Vec3 e1 = c.p[1] - c.p[0], e2 = c.p[2] - c.p[0];
-  const Vec3 dpdu = (e1 * b.y - e2 * a.y) / det, dpdv = (e2 * a.x - e1 * b.x) / det;
+  const Vec2 d1(t.b.u - t.a.u, t.b.v - t.a.v), d2(t.c.u - t.a.u, t.c.v - t.a.v);
+  const float det = d1.x * d2.y - d1.y * d2.x;
+  if (!(std::abs(det) > 1e-8f * (std::abs(d1.x * d2.y) + std::abs(d1.y * d2.x)))) return;
+  const Vec3 e1 = t.b.p - t.a.p, e2 = t.c.p - t.a.p;
+  const float per_det = 1 / det;
+  const Vec3 dpdu = (e1 * d2.y - e2 * d1.y) * per_det, dpdv = (e2 * d1.x - e1 * d2.x) * per_det;
   if (is_finite(dpdu) && is_finite(dpdv)) s.dpdu = dpdu, s.dpdv = dpdv;
 }
 
@@ -96,13 +114,13 @@ void move_to_world(const Instance& instance, Surface& s, Vec3& shading) {
 
 void set_mesh_surface(const Scene& scene, Surface& s) {
   const Mesh& mesh = scene.meshes[scene.shapes[s.shape].mesh];
-  const glm::uvec3 t = mesh.triangles[s.prim];
-  const Corners c = corners(mesh, t);
-  set_point(mesh, t, c, s);
-  set_tangents(mesh, t, c, s);
-  Vec3 shading = mesh.normals.empty() ? s.ng : interpolate(mesh.normals, t, s.bary);
+  const Triangle t = triangle_of(mesh, s.prim);
+  set_point(mesh, t, s);
+  set_tangents(mesh, t, s);
+  const bool smooth = !mesh.normals.empty();
+  Vec3 shading = smooth ? t.a.n * (1 - s.bary.x - s.bary.y) + t.b.n * s.bary.x + t.c.n * s.bary.y : s.ng;
   if (s.instance != none) move_to_world(scene.instances[s.instance], s, shading);
-  Vec3 n = mesh.normals.empty() ? s.ng : unit(shading, s.ng);
+  Vec3 n = smooth ? unit(shading, s.ng) : s.ng;
   if (glm::dot(n, s.ng) < 0) n = -n;
   s.frame = make_frame(n, s.dpdu);
 }
@@ -226,8 +244,7 @@ Surface sample_area(const Scene& scene, uint32_t id, const Vec2& u, float& pdf) 
     Vec2 in_triangle = u;
     s.prim = mesh.area.sample(in_triangle.x);
     s.bary = to_triangle(in_triangle);
-    const glm::uvec3 t = mesh.triangles[s.prim];
-    set_point(mesh, t, corners(mesh, t), s);
+    set_point(mesh, triangle_of(mesh, s.prim), s);
   } else {
     const UnitPoint at = sample_unit(shape.kind, u, s.uv);
     s.p = map_point(shape.to_world, Vec3(at.p));
@@ -264,16 +281,21 @@ Vec2 sphere_uv(const Shape& sphere, const Vec3& p) {
   return {turn < 0 ? turn + 1 : turn, std::atan2(std::sqrt(q.x * q.x + q.y * q.y), q.z) * inv_pi};
 }
 
-float triangle_error(const Mesh& mesh, uint32_t triangle) { return error_of(corners(mesh, mesh.triangles[triangle])); }
+float triangle_error(const Mesh& mesh, uint32_t triangle) {
+  Vec3 normal;
+  float error;
+  set_normal(triangle_of(mesh, triangle), normal, error);
+  return error;
+}
 
 float position_error(const Shape& quadric, const Vec3& p) {
   return quadric_error(quadric, p) + error_scale * max_abs(Vec3(quadric.to_world[3]));
 }
 
 float triangle_area(const Mesh& mesh, uint32_t triangle) {
-  const Corners c = corners(mesh, mesh.triangles[triangle]);
-  const glm::dvec3 a(c.p[0]);
-  const double twice = glm::length(glm::cross(glm::dvec3(c.p[1]) - a, glm::dvec3(c.p[2]) - a));
+  const glm::uvec3 t = mesh.triangles[triangle];
+  const glm::dvec3 a(mesh.positions[t.x]), b(mesh.positions[t.y]), c(mesh.positions[t.z]);
+  const double twice = glm::length(glm::cross(b - a, c - a));
   // Below this a density per area would overflow; nothing of that size lights anything.
   return twice > 1e-30 && twice < 1e38 ? float(twice / 2) : 0;
 }

@@ -205,7 +205,7 @@ bool sample_emission(const Scene& scene, uint32_t id, const Vec2& u_position, co
   const Light& light = scene.lights[id];
   if (is_infinite(light.kind)) return sample_emission_infinite(scene, id, u_position, u_direction, out);
   if (light.kind != LightKind::area) return sample_emission_delta(scene, id, u_direction, out);
-  const Surface at = sample_area(scene, light.shape, u_position, out.pdf_position);
+  const Surface at = sample_light_area(scene, light, u_position, out.pdf_position);
   const Vec3 local = to_cosine_hemisphere(u_direction);
   out.pdf_direction = cosine_hemisphere_pdf(local);
   if (!(out.pdf_position > 0) || !(out.pdf_direction > 0)) return false;

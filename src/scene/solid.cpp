@@ -59,12 +59,11 @@ struct View {
   double solid = 0;
 };
 
-// False where the rectangle is sampled by area: at a distance, where that is as good and faster, and where x is so near
-// its plane that it is a line. x on the dark side counts as seeing it.
+// False where the rectangle is sampled by area: farther away than its diagonal, where that is as good and faster, and
+// where x is so near its plane that it is a line. x on the dark side counts as seeing it.
 bool view_of(const Rectangle& r, const Vec3& from, View& v) {
-  if (!r.valid) return false;
   const Vec3 middle = r.corner + 0.5f * (r.x + r.y) - from;
-  if (length2(middle) > 4 * (length2(r.x) + length2(r.y))) return false;
+  if (length2(middle) > length2(r.x) + length2(r.y)) return false;
   const glm::dvec3 ex(r.x), ey(r.y), to_corner = glm::dvec3(r.corner) - glm::dvec3(from);
   const double width = glm::length(ex), height = glm::length(ey);
   v.x = ex / width;
@@ -84,11 +83,15 @@ bool view_of(const Rectangle& r, const Vec3& from, View& v) {
   return v.solid > 1e-6;
 }
 
-bool sample_view(const Scene& scene, const Light& light, const View& v, const Vec3& x, const Vec2& u,
-                 ShapeSample& out) {
-  const Rectangle& r = light.rectangle;
-  out.at.ng = glm::normalize(glm::cross(r.x, r.y));
-  if (!(glm::dot(out.at.ng, x - r.corner) > 0)) return false;
+// Places a point of the rectangle, a and b along its edges.
+void set_rectangle_point(const Light& light, float a, float b, Surface& at) {
+  at.ng = light.rectangle.normal;
+  at.error = light.rectangle.error;
+  at.shape = light.shape;
+  at.prim = a + b > 1 ? 1 : 0;
+}
+
+bool sample_view(const Light& light, const View& v, const Vec3& x, const Vec2& u, ShapeSample& out) {
   const double angle = u.x * v.solid + v.k, f = (std::cos(angle) * v.b0 - v.b1) / std::sin(angle);
   const double c = std::clamp(std::copysign(1 / std::sqrt(f * f + v.b0 * v.b0), f), -1.0, 1.0);
   const double px = std::clamp(c * v.z0 / std::sqrt(std::max(1 - c * c, 1e-300)), v.x0, v.x1);
@@ -98,19 +101,16 @@ bool sample_view(const Scene& scene, const Light& light, const View& v, const Ve
   const double py = std::clamp(h * d / std::sqrt(std::max(1 - h * h, 1e-300)), v.y0, v.y1);
   const glm::dvec3 between = v.x * px + v.y * py + v.z * v.z0;
   const double distance = glm::length(between);
-  const Mesh& mesh = scene.meshes[scene.shapes[light.shape].mesh];
+  set_rectangle_point(light, float((px - v.x0) / (v.x1 - v.x0)), float((py - v.y0) / (v.y1 - v.y0)), out.at);
   out.at.p = Vec3(glm::dvec3(x) + between);
-  out.at.error = triangle_error(mesh, 0);
-  out.at.shape = light.shape;
-  out.at.prim = (px - v.x0) / (v.x1 - v.x0) + (py - v.y0) / (v.y1 - v.y0) > 1 ? 1 : 0;
   out.wi = Vec3(between / distance);
   out.distance = float(distance);
   out.pdf = float(1 / v.solid);
   return out.distance > 0 && -glm::dot(out.at.ng, out.wi) > 0;
 }
 
-bool sample_by_area(const Scene& scene, uint32_t id, const Vec3& x, const Vec2& u, ShapeSample& out) {
-  out.at = sample_area(scene, id, u, out.pdf);
+bool sample_by_area(const Scene& scene, const Light& light, const Vec3& x, const Vec2& u, ShapeSample& out) {
+  out.at = sample_light_area(scene, light, u, out.pdf);
   const Vec3 between = out.at.p - x;
   const float d2 = length2(between);
   if (!(d2 > 0)) return false;
@@ -125,27 +125,42 @@ bool sample_by_area(const Scene& scene, uint32_t id, const Vec3& x, const Vec2& 
 }  // namespace
 
 bool sample_shape(const Scene& scene, const Light& light, const Vec3& x, const Vec2& u, ShapeSample& out) {
-  // Most points of a scene like a door's lie behind its lamp: they should not pay for sampling it.
   const Rectangle& r = light.rectangle;
-  if (r.valid && !(glm::dot(glm::cross(r.x, r.y), x - r.corner) > 0)) return false;
+  if (r.area > 0) {
+    if (!(glm::dot(r.normal, x - r.corner) > 0)) return false;
+    View view;
+    if (view_of(r, x, view)) return sample_view(light, view, x, u, out);
+  }
   const Shape& shape = scene.shapes[light.shape];
   Cone cone;
   if (shape.kind == ShapeKind::sphere && cone_of(shape, x, cone)) return sample_cone(shape, light, cone, u, out);
-  View view;
-  if (view_of(light.rectangle, x, view)) return sample_view(scene, light, view, x, u, out);
-  return sample_by_area(scene, light.shape, x, u, out);
+  return sample_by_area(scene, light, x, u, out);
 }
 
 float shape_pdf(const Scene& scene, const Light& light, const LightPoint& point, const Vec3& x, const Vec3& wi) {
-  const Shape& shape = scene.shapes[light.shape];
   const float cosine = -glm::dot(point.n, wi);
   if (!(cosine > 0)) return 0;
+  View view;
+  if (light.rectangle.area > 0 && view_of(light.rectangle, x, view)) return float(1 / view.solid);
+  const Shape& shape = scene.shapes[light.shape];
   Cone cone;
   if (shape.kind == ShapeKind::sphere && cone_of(shape, x, cone)) return cone_pdf(cone.height);
-  View view;
-  if (view_of(light.rectangle, x, view)) return float(1 / view.solid);
-  const float pdf = area_pdf(scene, light.shape, point.prim, point.uv) * length2(point.p - x) / cosine;
+  const float pdf = light_area_pdf(scene, light, point) * length2(point.p - x) / cosine;
   return pdf < infinity ? pdf : 0;
+}
+
+Surface sample_light_area(const Scene& scene, const Light& light, const Vec2& u, float& pdf) {
+  const Rectangle& r = light.rectangle;
+  if (!(r.area > 0)) return sample_area(scene, light.shape, u, pdf);
+  Surface at;
+  set_rectangle_point(light, u.x, u.y, at);
+  at.p = r.corner + r.x * u.x + r.y * u.y;
+  pdf = 1 / r.area;
+  return at;
+}
+
+float light_area_pdf(const Scene& scene, const Light& light, const LightPoint& point) {
+  return light.rectangle.area > 0 ? 1 / light.rectangle.area : area_pdf(scene, light.shape, point.prim, point.uv);
 }
 
 // Two triangles of the same winding that share a diagonal. The first one's corner at the right angle and its neighbours
@@ -155,15 +170,16 @@ Rectangle rectangle_of(const Mesh& mesh) {
   const glm::uvec3 s = mesh.triangles[0], t = mesh.triangles[1];
   for (int i = 0; i < 3; ++i) {
     const Vec3 corner = mesh.positions[s[i]], a = mesh.positions[s[(i + 1) % 3]], b = mesh.positions[s[(i + 2) % 3]];
-    const Vec3 x = a - corner, y = b - corner, far = a + y;
+    const Vec3 x = a - corner, y = b - corner, far = a + y, normal = glm::cross(x, y);
     const float size = std::sqrt(length2(x) + length2(y)), close = 1e-5f * (size + max_abs(corner));
     if (!(std::abs(glm::dot(x, y)) <= 1e-5f * std::sqrt(length2(x) * length2(y)))) continue;
-    if (!(length2(x) > 1e-30f) || !(length2(y) > 1e-30f) || !(close < 1e-3f * size)) return {};
+    const float area = std::sqrt(length2(normal));
+    if (!(area > 1e-15f * size && area < 1e15f && close < 1e-3f * size)) return {};
     for (int j = 0; j < 3; ++j)
       if (glm::distance(mesh.positions[t[j]], far) <= close &&
           glm::distance(mesh.positions[t[(j + 1) % 3]], b) <= close &&
           glm::distance(mesh.positions[t[(j + 2) % 3]], a) <= close)
-        return {corner, x, y, true};
+        return {corner, x, y, normal / area, area, std::max(triangle_error(mesh, 0), triangle_error(mesh, 1))};
   }
   return {};
 }

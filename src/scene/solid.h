@@ -17,7 +17,11 @@ struct ShapeSample {
 bool sample_shape(const Scene& scene, const Light& light, const Vec3& x, const Vec2& u, ShapeSample& out);
 /// Density per solid angle at x with which sample_shape finds this point, which lies along unit wi.
 float shape_pdf(const Scene& scene, const Light& light, const LightPoint& point, const Vec3& x, const Vec3& wi);
-/// The rectangle that a mesh is, valid only if it is one.
+/// A point of an area light uniform by area; pdf per area, 0 where the light has none.
+Surface sample_light_area(const Scene& scene, const Light& light, const Vec2& u, float& pdf);
+/// Density per area with which sample_light_area finds this point.
+float light_area_pdf(const Scene& scene, const Light& light, const LightPoint& point);
+/// The rectangle that a mesh is; area 0 if it is none.
 Rectangle rectangle_of(const Mesh& mesh);
 
 }  // namespace ajar

@@ -192,10 +192,10 @@ void compare_all(const Tracer& tracer, Traced& light, Traced& camera, const Vec2
     if (!connectable(last.guide)) continue;
     Sampler same = sampler;
     if (join_light(scene, sampler, camera.path, t, n, c)) {
-      Vec2 u_choice = same.next2();
-      const Vec2 u = same.next2();
+      float pick;
+      const uint32_t chosen = choose_light(scene, same, pick);
       DirectSample d;
-      ASSERT_TRUE(sample_direct(scene, scene.light_choice.sample(u_choice.x), last.p, u, d));
+      ASSERT_TRUE(sample_direct(scene, chosen, last.p, same.next2(), d));
       tally.compare(scene, c, lit(d.point, d.wi, camera, t, false), 1);
     }
     for (int s = 2; s <= light.path.n; ++s)

@@ -156,7 +156,7 @@ TEST(Refraction, RadianceOutOfGlass) {
 TEST(Refraction, PowerOutOfGlass) {
   Scene scene;
   scene.filter = make_filter(FilterKind::box);
-  look(scene, {0, 0, 1.5f}, {0, 0, 2}, 10, 12, 12);
+  look(scene, {0, 0, 1.2f}, {0, 0, 2}, 120, 12, 12);  // the ball is behind
   add_sphere(scene, Vec3(0), 1, add(scene, glass_of(1.5f)));
   scene.shapes[add_sphere(scene, Vec3(0), 2, add_diffuse(scene, Rgb(0.7f)))].flip = true;
   add_light(scene, LightKind::point, Rgb(11));

@@ -216,7 +216,9 @@ TEST(Geometry, OffsetsLeaveTrianglesAtEveryScale) {
             const Vec3 o = offset(s.p, s.ng, s.error, side * s.ng);
             ASSERT_GT(side * glm::dot(glm::dvec3(o) - p0, n), 0) << size << " " << away << " " << instanced;
           }
-          ASSERT_LT(s.error, 2e-5f * size * (1 + away));
+          const float edge = glm::distance(mesh.positions[0], mesh.positions[1]);
+          const bool sliver = triangle_area(mesh, 0) < 0.02f * size * size || edge < 0.1f * size;
+          ASSERT_LT(s.error, (sliver ? 1e-3f : 2e-5f) * size * (1 + away));
         }
 }
 

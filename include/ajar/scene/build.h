@@ -81,7 +81,8 @@ Scene under_sky(LightKind kind, int size = 24);
 Scene instanced(bool mirrored, int size = 32);
 /// A floor and back wall whose diffuse material is bent by a bump map (or a normal map), under the room's lamp.
 Scene bump_plane(bool normal_map = false, int size = 32);
-/// The room without its ceiling, lit by one light of the kind (area: the lamp).
+/// The room without its ceiling, seen from above so that walls and floor fill the image, lit by one light of the kind
+/// (area: the lamp).
 Scene lit_by(LightKind kind, int size = 24);
 /// The room, its lamp of the shape (mesh: a globe of triangles).
 Scene lit_by(ShapeKind kind, int size = 24);

@@ -12,7 +12,9 @@ enum class LightKind : uint8_t { area, constant, envmap, point, spot, directiona
 /// A mesh light that is one rectangle: corner + a x + b y, 0 <= a, b <= 1, shines to the side of cross(x, y).
 struct Rectangle {
   Vec3 corner{0}, x{0}, y{0};
-  bool valid = false;
+  Vec3 normal{0, 0, 1};  ///< unit
+  float area = 0;        ///< 0: it is no rectangle
+  float error = 0;       ///< LightPoint::error of its points
 };
 
 struct Light {

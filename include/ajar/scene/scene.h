@@ -14,15 +14,24 @@
 
 namespace ajar {
 
-/// Triangles in world space (in the group's space for shapes of a shapegroup). normals, uvs and attributes may be
+/// A vertex as make_surface reads it: all of it in half a cache line.
+struct alignas(32) PackedVertex {
+  Vec3 p{0};
+  float u = 0;
+  Vec3 n{0};
+  float v = 0;
+};
+
+/// Triangles in world space (in the group's space for shapes of a shapegroup). normals, uvs and colors may be
 /// empty.
 struct Mesh {
   std::vector<Vec3> positions;
   std::vector<Vec3> normals;  ///< unit; empty: face normals
   std::vector<Vec2> uvs;
   std::vector<glm::uvec3> triangles;
-  std::vector<Rgb> colors;  ///< per vertex, for mesh_attribute textures
-  Distribution area;        ///< over triangles; filled by finish for meshes that emit
+  std::vector<Rgb> colors;           ///< per vertex, for mesh_attribute textures
+  std::vector<PackedVertex> packed;  ///< positions, normals and uvs side by side; made by finish
+  Distribution area;                 ///< over triangles; filled by finish for meshes that emit
   double total_area = 0;
 };
 

@@ -40,6 +40,11 @@ void count_meshes(Loader& loader, const Node& node) {
   }
 }
 
+bool is_definition(const Node& node) {
+  static constexpr const char* tags[] = {"spectrum", "rgb", "srgb", "blackbody", "sampler", "film", "rfilter", "ref"};
+  return std::find(std::begin(tags), std::end(tags), node.tag) != std::end(tags);
+}
+
 void load_child(Loader& loader, const Node& node, bool& has_sensor, bool& has_integrator) {
   if (node.tag == "bsdf") {
     load_bsdf(loader, node);
@@ -55,11 +60,12 @@ void load_child(Loader& loader, const Node& node, bool& has_sensor, bool& has_in
     if (has_integrator) return note(loader, node, "the scene has several integrators: the first one is used");
     has_integrator = true;
     load_integrator(loader, node);
-  } else if (node.tag == "medium") {
-    note(loader, node, "participating media are not supported; shapes that name it are errors");
-  } else if (node.tag == "texture" || (node.tag == "spectrum" && !node.id.empty()) || node.tag == "sampler" ||
-             node.tag == "film" || node.tag == "ref") {
-    // definitions: read where they are named
+  } else if (node.tag == "medium" || node.tag == "phase" || node.tag == "volume") {
+    note(loader, node, "participating media are not supported; a shape that names it is an error");
+  } else if (node.tag == "texture") {
+    check_texture(loader, node);  // read where it is named: only then is it known what its numbers stand for
+  } else if (is_definition(node)) {
+    // read where it is named
   } else if (node.name.empty() || !node.children.empty()) {
     unsupported(loader, node,
                 "unknown element; supported: integrator, sensor, bsdf, texture, shape, emitter, default, include, path",

@@ -112,6 +112,8 @@ bool is_similarity(const DMat4& m);
 /// <rgb>, <srgb>, <spectrum>, <blackbody>, <float>: linear RGB, not negative.
 Rgb colour_of(Loader& loader, const Node& node, Colour kind);
 bool is_texture(const Node& node);
+/// Complains about a kind of texture that Ajar lacks.
+void check_texture(Loader& loader, const Node& node);
 /// A parameter that may be a number, a colour or a texture.
 Slot slot(Params& params, std::initializer_list<const char*> names, const Slot& otherwise, Colour kind);
 /// The same of an element at hand.

@@ -22,6 +22,14 @@ std::string lower(std::string s) {
   return s;
 }
 
+// Elements that plugins may have inside.
+bool is_parameter(const Node& node) {
+  static constexpr const char* tags[] = {"float",    "integer", "string", "boolean",   "rgb",       "srgb",
+                                         "spectrum", "point",   "vector", "transform", "blackbody", "texture",
+                                         "ref",      "medium",  "bsdf",   "emitter",   "volume",    "phase"};
+  return std::find(std::begin(tags), std::end(tags), node.tag) != std::end(tags);
+}
+
 const std::string& value_of(const Loader& loader, const Node& node) {
   const std::string* value = attribute(node, "value");
   if (value == nullptr) fail(loader, node, "needs value=\"...\"");
@@ -96,7 +104,7 @@ const Node* find(Params& params, std::initializer_list<const char*> names) {
   const Node* found = nullptr;
   for (size_t i = 0; i < params.node.children.size(); ++i) {
     const Node& child = params.node.children[i];
-    if (std::find(names.begin(), names.end(), child.name) == names.end()) continue;
+    if (std::find(names.begin(), names.end(), child.name) == names.end() || !is_parameter(child)) continue;
     if (found != nullptr)
       note(params.loader, params.node, fmt::format("\"{}\" is given more than once: the last one counts", child.name));
     found = &child;
@@ -193,13 +201,11 @@ void finish(Params& params, std::initializer_list<const char*> harmless) {
   for (size_t i = 0; i < params.node.children.size(); ++i) {
     if (params.used[i]) continue;
     const Node& child = params.node.children[i];
-    static constexpr const char* parameters[] = {"float",    "integer", "string", "boolean",   "rgb",       "srgb",
-                                                 "spectrum", "point",   "vector", "transform", "blackbody", "texture",
-                                                 "ref",      "medium",  "bsdf",   "emitter",   "volume",    "phase"};
-    if (std::find(std::begin(parameters), std::end(parameters), child.tag) == std::end(parameters))
+    if (!is_parameter(child))
       unsupported(params.loader, child,
                   fmt::format("is unknown inside <{} type=\"{}\">", params.node.tag, params.node.written), "left out");
-    else if (std::find(harmless.begin(), harmless.end(), child.name) == harmless.end())
+    else if (std::find(harmless.begin(), harmless.end(), child.name) == harmless.end() &&
+             params.loader.said.insert("unused " + child.tag + " " + child.name).second)
       note(params.loader, params.node,
            child.name.empty() ? fmt::format("a nested <{}> is not used", child.tag)
                               : fmt::format("the parameter \"{}\" is not used", child.name));

@@ -10,19 +10,6 @@ namespace {
 constexpr int max_film = 65536;
 constexpr double film_diagonal = 43.266615305567875;  // mm, of 36 x 24
 
-void read_film(Loader& loader, const Node& node, Camera& camera) {
-  Params p(loader, node);
-  static constexpr const char* known[] = {"hdrfilm", "ldrfilm", "mfilm", "tiledhdrfilm"};
-  if (std::find(std::begin(known), std::end(known), node.type) == std::end(known))
-    unsupported(loader, node, fmt::format("unknown film; supported: {}", fmt::join(known, ", ")), "read as hdrfilm");
-  camera.width = integer(p, "width", 768, 1, max_film);
-  camera.height = integer(p, "height", 576, 1, max_film);
-  camera.crop_x = integer(p, "crop_offset_x", 0, 0, camera.width - 1);
-  camera.crop_y = integer(p, "crop_offset_y", 0, 0, camera.height - 1);
-  camera.crop_width = integer(p, "crop_width", camera.width - camera.crop_x, 1, camera.width - camera.crop_x);
-  camera.crop_height = integer(p, "crop_height", camera.height - camera.crop_y, 1, camera.height - camera.crop_y);
-}
-
 Filter read_filter(Loader& loader, const Node& node) {
   Params p(loader, node);
   static constexpr std::pair<const char*, FilterKind> kinds[] = {{"box", FilterKind::box},
@@ -59,6 +46,20 @@ Filter read_filter(Loader& loader, const Node& node) {
   }
   finish(p);
   return filter;
+}
+
+void read_film(Loader& loader, const Node& node, Camera& camera) {
+  Params p(loader, node);
+  static constexpr const char* known[] = {"hdrfilm", "ldrfilm", "mfilm", "tiledhdrfilm"};
+  if (std::find(std::begin(known), std::end(known), node.type) == std::end(known))
+    unsupported(loader, node, fmt::format("unknown film; supported: {}", fmt::join(known, ", ")), "read as hdrfilm");
+  camera.width = integer(p, "width", 768, 1, max_film);
+  camera.height = integer(p, "height", 576, 1, max_film);
+  camera.crop_x = integer(p, "crop_offset_x", 0, 0, camera.width - 1);
+  camera.crop_y = integer(p, "crop_offset_y", 0, 0, camera.height - 1);
+  camera.crop_width = integer(p, "crop_width", camera.width - camera.crop_x, 1, camera.width - camera.crop_x);
+  camera.crop_height = integer(p, "crop_height", camera.height - camera.crop_y, 1, camera.height - camera.crop_y);
+  for (const Node* filter : nested(p, "rfilter")) loader.scene.filter = read_filter(loader, *filter);
 }
 
 // Tangent of half the field of view along x, from whatever the file gives.
@@ -129,6 +130,8 @@ void read_view(Params& p, Camera& camera) {
     set_perspective(camera, float(glm::degrees(2 * std::atan(tan_x))), Mat4(m));
     camera.plane = Vec2(float(tan_x), float(tan_x / aspect * scale.y / scale.x));
   }
+  if (!(std::min(camera.plane.x, camera.plane.y) > 1e-18f && std::max(camera.plane.x, camera.plane.y) < 1e18f))
+    fail(p.loader, p.node, "its to_world stretches the view beyond measure");
   const double x = number(p, "principal_point_offset_x", 0), y = number(p, "principal_point_offset_y", 0);
   if (!(std::abs(x) <= 100 && std::abs(y) <= 100)) fail(p.loader, p.node, "principal_point_offset should be small");
   camera.principal = Vec2(float(x), float(y));
@@ -159,11 +162,7 @@ void load_sensor(Loader& loader, const Node& node) {
   loader.scene.filter = make_filter(FilterKind::gaussian, 0, 0.5f);
   const std::vector<const Node*> films = nested(p, "film");
   if (films.size() > 1) note(loader, node, "has more than one film: the first one counts");
-  if (!films.empty()) {
-    read_film(loader, *films.front(), camera);
-    Params film(loader, *films.front());
-    for (const Node* filter : nested(film, "rfilter")) loader.scene.filter = read_filter(loader, *filter);
-  }
+  if (!films.empty()) read_film(loader, *films.front(), camera);
   for (const Node* sampler : nested(p, "sampler")) read_sampler(loader, *sampler);
   for (const Node* medium : nested(p, "medium"))
     unsupported(loader, *medium, "participating media are not supported", "left out");
@@ -180,7 +179,6 @@ void load_integrator(Loader& loader, const Node& node) {
   static constexpr Alias names[] = {{"path", "path"},
                                     {"bdpt", "bdpt"},
                                     {"light", "light"},
-                                    {"guided_path", "guided-path"},
                                     {"guided-path", "guided-path"},
                                     {"guided-bdpt", "guided-bdpt"},
                                     {"vcm", "vcm"},
@@ -188,7 +186,7 @@ void load_integrator(Loader& loader, const Node& node) {
                                     {"photon", "photon"},
                                     {"vpl", "vpl"},
                                     {"volpath", "path"},
-                                    {"volpath_simple", "path"},
+                                    {"volpath-simple", "path"},
                                     {"volpathmis", "path"},
                                     {"ptracer", "light"},
                                     {"direct", "path"}};
@@ -201,8 +199,9 @@ void load_integrator(Loader& loader, const Node& node) {
   const Open open(loader, node);
   if (const std::vector<const Node*> inner = nested(p, "integrator"); !inner.empty())
     return load_integrator(loader, *inner.front());  // aov, moment and others measure what another one renders
-  const auto name =
-      std::find_if(std::begin(names), std::end(names), [&](const Alias& a) { return node.type == a.theirs; });
+  std::string type = node.type;
+  std::replace(type.begin(), type.end(), '_', '-');
+  const auto name = std::find_if(std::begin(names), std::end(names), [&](const Alias& a) { return type == a.theirs; });
   if (name == std::end(names)) note(loader, node, "Ajar has no integrator of this name: its own default is used");
   hints.integrator = name == std::end(names) ? node.written : name->ours;
 }

@@ -9,7 +9,7 @@
 namespace ajar {
 namespace {
 
-constexpr const char* supported = "supported: bitmap, checkerboard, scale, mesh_attribute";
+constexpr const char* types[] = {"bitmap", "checkerboard", "scale", "mesh_attribute"};
 
 // Affine map of (u, v): scale and offset (0.x), then the transform (2.x, 3.x).
 Mat3 uv_map(Params& p) {
@@ -146,9 +146,16 @@ uint32_t add_texture(Loader& loader, const Node& node, Texture&& texture) {
   return uint32_t(loader.scene.textures.size() - 1);
 }
 
+void check_texture(Loader& loader, const Node& node) {
+  if (is_texture(node) && std::find(std::begin(types), std::end(types), node.type) == std::end(types))
+    unsupported(loader, node, fmt::format("unknown texture; supported: {}", fmt::join(types, ", ")),
+                "grey 0.5 in its place");
+}
+
 uint32_t load_texture(Loader& loader, const Node& node, Colour kind) {
   const auto found = loader.textures.find({&node, kind});
   if (found != loader.textures.end()) return found->second;
+  check_texture(loader, node);
   const Open open(loader, node);
   Params p(loader, node);
   Texture t;
@@ -161,7 +168,6 @@ uint32_t load_texture(Loader& loader, const Node& node, Colour kind) {
   } else if (node.type == "mesh_attribute") {
     t = mesh_attribute(p);
   } else {
-    unsupported(loader, node, fmt::format("unknown texture; {}", supported), "grey 0.5 in its place");
     t.kind = TextureKind::checkerboard;
     t.color0 = t.color1 = Slot(0.5f);
   }

@@ -46,10 +46,10 @@ inline LoadOptions lenient() {
 }  // namespace ajar::kit
 
 #define EXPECT_SAYS(text, words) EXPECT_NE((text).find(words), std::string::npos) << "it says: \"" << (text) << '"'
-#define EXPECT_RGB(value, r, g, b, tolerance)   \
-  do {                                          \
-    const ajar::Rgb rgb_ = (value);             \
-    EXPECT_NEAR(rgb_.x, r, tolerance) << "red"; \
+#define EXPECT_RGB(value, r, g, b, tolerance)     \
+  do {                                            \
+    const ajar::Rgb rgb_ = (value);               \
+    EXPECT_NEAR(rgb_.x, r, tolerance) << "red";   \
     EXPECT_NEAR(rgb_.y, g, tolerance) << "green"; \
-    EXPECT_NEAR(rgb_.z, b, tolerance) << "blue"; \
+    EXPECT_NEAR(rgb_.z, b, tolerance) << "blue";  \
   } while (false)

@@ -21,21 +21,28 @@ LoadOptions define(const std::string& name, const std::string& value) {
 }
 
 TEST(Names, BothSpellingsAreOne) {
-  const std::pair<const char*, const char*> names[] = {
-      {"toWorld", "to_world"},         {"to_world", "to_world"},
-      {"intIOR", "int_ior"},           {"extIOR", "ext_ior"},
-      {"alphaU", "alpha_u"},           {"cropOffsetX", "crop_offset_x"},
-      {"diffuseReflectance", "diffuse_reflectance"}, {"p0", "p0"},
-      {"color0", "color0"},            {"toUV", "to_uv"},
-      {"sigmaA", "sigma_a"},           {"Rectangle", "rectangle"},
-      {"", ""},                        {"principalPointOffsetX", "principal_point_offset_x"}};
+  const std::pair<const char*, const char*> names[] = {{"toWorld", "to_world"},
+                                                       {"to_world", "to_world"},
+                                                       {"intIOR", "int_ior"},
+                                                       {"extIOR", "ext_ior"},
+                                                       {"alphaU", "alpha_u"},
+                                                       {"cropOffsetX", "crop_offset_x"},
+                                                       {"diffuseReflectance", "diffuse_reflectance"},
+                                                       {"p0", "p0"},
+                                                       {"color0", "color0"},
+                                                       {"toUV", "to_uv"},
+                                                       {"sigmaA", "sigma_a"},
+                                                       {"Rectangle", "rectangle"},
+                                                       {"", ""},
+                                                       {"principalPointOffsetX", "principal_point_offset_x"}};
   for (const auto& [theirs, ours] : names) EXPECT_EQ(snake_case(theirs), ours);
 }
 
 TEST(Names, MayBeMixedInOneElement) {
   const Scene s = load_inside(
       "<bsdf type='roughplastic' id='m'><float name='intIOR' value='1.6'/><float name='ext_ior' value='1'/>"
-      "<rgb name='diffuseReflectance' value='.1 .2 .3'/><rgb name='specular_reflectance' value='.5'/></bsdf>" + ball);
+      "<rgb name='diffuseReflectance' value='.1 .2 .3'/><rgb name='specular_reflectance' value='.5'/></bsdf>" +
+      ball);
   const Material& m = s.materials[0];
   EXPECT_FLOAT_EQ(m.ior, 1.6f);
   EXPECT_RGB(m.reflectance.value, 0.1, 0.2, 0.3, 1e-6);
@@ -51,7 +58,8 @@ TEST(Parameters, DefaultIsPutInAndOverruled) {
 
 TEST(Parameters, FirstDefaultCounts) {
   EXPECT_FLOAT_EQ(grey(load_inside("<default name='r' value='0.25'/><default name='r' value='0.5'/>"
-                                   "<bsdf type='diffuse' id='m'><rgb name='reflectance' value='$r'/></bsdf>" + ball)),
+                                   "<bsdf type='diffuse' id='m'><rgb name='reflectance' value='$r'/></bsdf>" +
+                                   ball)),
                   0.25f);
 }
 
@@ -59,14 +67,16 @@ TEST(Parameters, StandInAnyAttributeAndInsideText) {
   const Scene s = load_inside(
       "<default name='kind' value='diffuse'/><default name='n' value='m'/><default name='part' value='.2'/>"
       "<default name='partial' value='.4'/><integrator type='$kind'/>"
-      "<bsdf type='$kind' id='$n'><rgb name='reflectance' value='$part, $partial, 0$part'/></bsdf>" + ball);
+      "<bsdf type='$kind' id='$n'><rgb name='reflectance' value='$part, $partial, 0$part'/></bsdf>" +
+      ball);
   EXPECT_RGB(s.materials[0].reflectance.value, 0.2, 0.4, 0.2, 1e-6);
   EXPECT_EQ(s.hints.integrator, "diffuse");
 }
 
 TEST(Parameters, DefaultMayNameAnother) {
   EXPECT_FLOAT_EQ(grey(load_inside("<default name='a' value='0.125'/><default name='b' value='$a'/>"
-                                   "<bsdf type='diffuse' id='m'><rgb name='reflectance' value='$b'/></bsdf>" + ball)),
+                                   "<bsdf type='diffuse' id='m'><rgb name='reflectance' value='$b'/></bsdf>" +
+                                   ball)),
                   0.125f);
 }
 
@@ -149,7 +159,8 @@ TEST(Include, BringsElementsAndDefaults) {
   const std::string use = "<shape type='sphere'><ref id='included'/></shape>";
   EXPECT_FLOAT_EQ(grey(load_inside("<include filename='fragment.xml'/>" + use)), 0.3f);
   EXPECT_FLOAT_EQ(grey(load_inside("<include filename='fragment.xml'/>" + use, define("grey", "0.7"))), 0.7f);
-  EXPECT_FLOAT_EQ(grey(load_inside("<default name='grey' value='0.1'/><include filename='fragment.xml'/>" + use)), 0.1f);
+  EXPECT_FLOAT_EQ(grey(load_inside("<default name='grey' value='0.1'/><include filename='fragment.xml'/>" + use)),
+                  0.1f);
   EXPECT_FLOAT_EQ(grey(load_inside("<default name='f' value='fragment'/><include filename='$f.xml'/>" + use)), 0.3f);
   EXPECT_FLOAT_EQ(grey(load_inside("<include filename='lone.xml'/><shape type='sphere'><ref id='lone'/></shape>")),
                   0.6f);
@@ -217,8 +228,8 @@ TEST(Xml, UnknownElementsAreErrorsOrNotes) {
   EXPECT_SAYS(error_of("<gadget/>"), "<gadget>: unknown element");
   EXPECT_TRUE(says(load_inside("<gadget/>", lenient()).notes, "<gadget>"));
   EXPECT_SAYS(error_of("<bsdf type='diffuse'><hide name='reflectance' value='1'/></bsdf>"), "<hide");
-  EXPECT_TRUE(says(load_inside("<bsdf type='diffuse'><hide name='reflectance' value='1'/></bsdf>", lenient()).notes,
-                   "<hide"));
+  EXPECT_TRUE(
+      says(load_inside("<bsdf type='diffuse'><hide name='reflectance' value='1'/></bsdf>", lenient()).notes, "<hide"));
 }
 
 TEST(Xml, UnusedParametersAreNotedOnce) {
@@ -231,8 +242,8 @@ TEST(Xml, UnusedParametersAreNotedOnce) {
 }
 
 TEST(Xml, LastOfTwoParametersCounts) {
-  const Scene s = load_inside(
-      "<bsdf type='roughplastic'><float name='alpha' value='.2'/><float name='alpha' value='.3'/></bsdf>");
+  const Scene s =
+      load_inside("<bsdf type='roughplastic'><float name='alpha' value='.2'/><float name='alpha' value='.3'/></bsdf>");
   EXPECT_FLOAT_EQ(s.materials[0].alpha_u.value.x, 0.3f);
   EXPECT_TRUE(says(s.notes, "more than once"));
 }

@@ -1,0 +1,241 @@
+// Every bsdf: parameters in both spellings, defaults, what is refused.
+#include <fmt/format.h>
+
+#include "scene_text.h"
+
+namespace ajar {
+namespace {
+
+using namespace kit;
+
+// The last material read: nested ones come before what holds them.
+Material last(const std::string& text, const LoadOptions& options = {}, const std::string& version = "3.0.0") {
+  return load_inside(text, options, version).materials.back();
+}
+std::string bsdf(const std::string& type, const std::string& inside = "") {
+  return fmt::format("<bsdf type='{}'>{}</bsdf>", type, inside);
+}
+std::string number(const std::string& name, double value) {
+  return fmt::format("<float name='{}' value='{}'/>", name, value);
+}
+std::string word(const std::string& name, const std::string& value) {
+  return fmt::format("<string name='{}' value='{}'/>", name, value);
+}
+const std::string checker = "<texture type='checkerboard'/>";
+std::string texture(const std::string& name) { return fmt::format("<texture name='{}' type='checkerboard'/>", name); }
+
+TEST(Bsdf, Diffuse) {
+  Material m = last(bsdf("diffuse"));
+  EXPECT_EQ(m.kind, MaterialKind::diffuse);
+  EXPECT_RGB(m.reflectance.value, 0.5, 0.5, 0.5, 0);
+  EXPECT_NE(last(bsdf("diffuse", texture("reflectance"))).reflectance.texture, none);
+  EXPECT_NE(last(bsdf("diffuse", texture("diffuseReflectance"))).reflectance.texture, none);
+  EXPECT_NE(last(bsdf("diffuse", checker)).reflectance.texture, none);
+}
+
+TEST(Bsdf, Conductor) {
+  Material m = last(bsdf("conductor", word("material", "Au")));
+  EXPECT_EQ(m.kind, MaterialKind::conductor);
+  EXPECT_RGB(m.eta, 0.143, 0.375, 1.4425, 1e-3);
+  EXPECT_RGB(m.k, 3.983, 2.386, 1.603, 1e-3);
+  m = last(bsdf("conductor"));  // 2.x, 3.x: a perfect mirror
+  EXPECT_RGB(m.eta, 0, 0, 0, 0);
+  EXPECT_RGB(m.k, 1, 1, 1, 0);
+  m = last(bsdf("conductor"), {}, "0.6.0");  // 0.x: copper
+  EXPECT_RGB(m.eta, 0.2004, 0.9240, 1.1022, 1e-3);
+  m = last(bsdf("conductor", "<rgb name='eta' value='1 2 3'/><rgb name='k' value='4 5 6'/>" + number("extEta", 2)));
+  EXPECT_RGB(m.eta, 0.5, 1, 1.5, 1e-6);
+  EXPECT_RGB(m.k, 2, 2.5, 3, 1e-6);
+  m = last(bsdf("conductor", number("eta", 1.5) + number("k", 3) + word("extEta", "water")));
+  EXPECT_RGB(m.eta, 1.5 / 1.333, 1.5 / 1.333, 1.5 / 1.333, 1e-5);
+  m = last(
+      bsdf("conductor", "<spectrum name='eta' value='300:1.5, 900:1.5'/><spectrum name='k' value='300:7, 900:7'/>"));
+  EXPECT_RGB(m.eta, 1.5, 1.5, 1.5, 1e-5);
+  EXPECT_RGB(m.k, 7, 7, 7, 1e-5);
+  EXPECT_SAYS(error_of(bsdf("conductor", word("material", "Xx"))), "unknown material \"Xx\"; known are none, a-C, Ag");
+  EXPECT_SAYS(error_of(bsdf("conductor", texture("eta"))), "has to be one colour");
+}
+
+TEST(Bsdf, MicrofacetParameters) {
+  Material m = last(bsdf("roughconductor"));
+  EXPECT_EQ(m.kind, MaterialKind::roughconductor);
+  EXPECT_EQ(m.distribution, Microfacet::beckmann);
+  EXPECT_FLOAT_EQ(m.alpha_u.value.x, 0.1f);
+  m = last(bsdf("roughconductor", word("distribution", "GGX") + number("alphaU", 0.2) + number("alpha_v", 0.3)));
+  EXPECT_EQ(m.distribution, Microfacet::ggx);
+  EXPECT_FLOAT_EQ(m.alpha_u.value.x, 0.2f);
+  EXPECT_FLOAT_EQ(m.alpha_v.value.x, 0.3f);
+  m = last(bsdf("roughdielectric", texture("alpha")));
+  EXPECT_NE(m.alpha_u.texture, none);
+  EXPECT_EQ(m.alpha_v.texture, m.alpha_u.texture);
+  EXPECT_SAYS(error_of(bsdf("roughconductor", number("alpha", 0))), "alpha should be greater than 0; conductor is");
+  EXPECT_SAYS(error_of(bsdf("roughplastic", number("alpha", 0))), "alpha should be greater than 0");
+  EXPECT_SAYS(error_of(bsdf("roughconductor", word("distribution", "cosine"))), "known are beckmann, ggx");
+  const Scene s = load_inside(bsdf("roughconductor", word("distribution", "phong")));
+  EXPECT_EQ(s.materials[0].distribution, Microfacet::beckmann);
+  EXPECT_TRUE(says(s.notes, "phong distribution"));
+}
+
+TEST(Bsdf, Dielectrics) {
+  const std::pair<const char*, MaterialKind> kinds[] = {{"dielectric", MaterialKind::dielectric},
+                                                        {"roughdielectric", MaterialKind::roughdielectric},
+                                                        {"thindielectric", MaterialKind::thindielectric}};
+  for (const auto& [type, kind] : kinds) {
+    Material m = last(bsdf(type));
+    EXPECT_EQ(m.kind, kind);
+    EXPECT_NEAR(m.ior, 1.5046 / 1.000277, 1e-6);
+    EXPECT_RGB(m.transmittance.value, 1, 1, 1, 0);
+    m = last(bsdf(type, number("intIOR", 1.33) + word("extIOR", "vacuum") +
+                            "<spectrum name='specularTransmittance' value='.5'/>"
+                            "<rgb name='specular_reflectance' value='.25'/>"));
+    EXPECT_FLOAT_EQ(m.ior, 1.33f);
+    EXPECT_FLOAT_EQ(m.transmittance.value.x, 0.5f);
+    EXPECT_FLOAT_EQ(m.specular.value.x, 0.25f);
+    EXPECT_NEAR(last(bsdf(type, word("int_ior", "diamond") + word("ext_ior", "1.5"))).ior, 2.419 / 1.5, 1e-6);
+  }
+  EXPECT_SAYS(error_of(bsdf("dielectric", word("int_ior", "kryptonite"))), "known are vacuum, helium");
+  EXPECT_SAYS(error_of(bsdf("dielectric", number("int_ior", 0))), "index of refraction");
+  EXPECT_SAYS(error_of(bsdf("dielectric", number("int_ior", -1.5))), "index of refraction");
+}
+
+TEST(Bsdf, Plastics) {
+  Material m = last(bsdf("plastic"));
+  EXPECT_EQ(m.kind, MaterialKind::plastic);
+  EXPECT_NEAR(m.ior, 1.49 / 1.000277, 1e-6);
+  EXPECT_FALSE(m.nonlinear);
+  EXPECT_RGB(m.reflectance.value, 0.5, 0.5, 0.5, 0);
+  m = last(bsdf("roughplastic", "<boolean name='nonlinear' value='true'/>" + number("alpha", 0.3) +
+                                    word("distribution", "ggx") + texture("diffuse_reflectance")));
+  EXPECT_EQ(m.kind, MaterialKind::roughplastic);
+  EXPECT_TRUE(m.nonlinear);
+  EXPECT_FLOAT_EQ(m.alpha_u.value.x, 0.3f);
+  EXPECT_EQ(m.distribution, Microfacet::ggx);
+  EXPECT_NE(m.reflectance.texture, none);
+  EXPECT_SAYS(error_of(bsdf("plastic", "<boolean name='nonlinear' value='maybe'/>")), "should be true or false");
+}
+
+TEST(Bsdf, Phong) {
+  Material m = last(bsdf("phong"));
+  EXPECT_FLOAT_EQ(m.exponent.value.x, 30);
+  EXPECT_FLOAT_EQ(m.specular.value.x, 0.2f);
+  EXPECT_FLOAT_EQ(m.reflectance.value.x, 0.5f);
+  const Scene s = load_inside(bsdf("phong", number("diffuseReflectance", 0.9) + number("specularReflectance", 0.6)));
+  EXPECT_NEAR(s.materials[0].reflectance.value.x, 0.6, 1e-6);
+  EXPECT_NEAR(s.materials[0].specular.value.x, 0.4, 1e-6);
+  EXPECT_TRUE(says(s.notes, "scaled down"));
+}
+
+TEST(Bsdf, Principled) {
+  Material m = last(bsdf("principled"));
+  EXPECT_EQ(m.kind, MaterialKind::principled);
+  EXPECT_FLOAT_EQ(m.ior, 1.5f);
+  EXPECT_FLOAT_EQ(m.roughness.value.x, 0.5f);
+  EXPECT_RGB(m.reflectance.value, 0.5, 0.5, 0.5, 0);
+  m = last(bsdf("principled", "<rgb name='base_color' value='.1 .2 .3'/>" + number("roughness", 0.3) +
+                                  number("spec_trans", 0.4) + number("clearcoat_gloss", 0.6) + texture("metallic") +
+                                  number("specular", 0.5) + number("anisotropic", 0.7) + number("sheen", 0.8)));
+  EXPECT_RGB(m.reflectance.value, 0.1, 0.2, 0.3, 1e-6);
+  EXPECT_FLOAT_EQ(m.roughness.value.x, 0.3f);
+  EXPECT_FLOAT_EQ(m.spec_trans.value.x, 0.4f);
+  EXPECT_FLOAT_EQ(m.clearcoat_gloss.value.x, 0.6f);
+  EXPECT_FLOAT_EQ(m.anisotropic.value.x, 0.7f);
+  EXPECT_FLOAT_EQ(m.sheen.value.x, 0.8f);
+  EXPECT_NE(m.metallic.texture, none);
+  EXPECT_NEAR(m.ior, 1.5, 1e-5);  // 4 % at normal incidence
+  EXPECT_SAYS(error_of(bsdf("principled", number("specular", -1))), "specular should be");
+  EXPECT_SAYS(error_of(bsdf("principled", number("eta", 0.5))), "eta should be");
+}
+
+TEST(Bsdf, Twosided) {
+  Scene s = load_inside(bsdf("twosided", bsdf("diffuse") + bsdf("plastic")));
+  EXPECT_EQ(s.materials[2].kind, MaterialKind::twosided);
+  EXPECT_EQ(s.materials[2].nested[0], 0u);
+  EXPECT_EQ(s.materials[2].nested[1], 1u);
+  EXPECT_EQ(last(bsdf("twosided", bsdf("diffuse"))).nested[1], none);
+  EXPECT_SAYS(error_of(bsdf("twosided")), "needs 1 to 2 nested bsdfs, has 0");
+  EXPECT_SAYS(error_of(bsdf("twosided", bsdf("diffuse") + bsdf("diffuse") + bsdf("diffuse"))), "has 3");
+  for (const char* type : {"dielectric", "roughdielectric", "thindielectric", "null"})
+    EXPECT_SAYS(error_of(bsdf("twosided", bsdf(type))), "lets light through");
+  EXPECT_SAYS(error_of(bsdf("twosided", bsdf("mask", bsdf("diffuse")))), "lets light through");
+  EXPECT_SAYS(error_of(bsdf("twosided", bsdf("principled", number("spec_trans", 0.5)))), "lets light through");
+  EXPECT_EQ(error_of(bsdf("twosided", bsdf("principled"))), "");
+}
+
+TEST(Bsdf, Mask) {
+  EXPECT_RGB(last(bsdf("mask", bsdf("diffuse"))).weight.value, 0.5, 0.5, 0.5, 0);
+  EXPECT_RGB(last(bsdf("mask", bsdf("diffuse") + "<rgb name='opacity' value='.1 .2 .3'/>")).weight.value, 0.1, 0.2, 0.3,
+             1e-6);
+  EXPECT_NE(last(bsdf("mask", texture("opacity") + bsdf("diffuse"))).weight.texture, none);
+  EXPECT_NE(last(bsdf("mask", checker + bsdf("diffuse"))).weight.texture, none);
+  EXPECT_SAYS(error_of(bsdf("mask")), "needs 1 nested bsdf, has 0");
+}
+
+TEST(Bsdf, Blend) {
+  Scene s = load_inside(bsdf("blendbsdf", number("weight", 0.25) + bsdf("diffuse") + bsdf("plastic")));
+  EXPECT_EQ(s.materials[2].kind, MaterialKind::blend);
+  EXPECT_FLOAT_EQ(s.materials[2].weight.value.x, 0.25f);
+  s = load_inside(bsdf("blendbsdf", "<bsdf name='bsdf_1' type='plastic'/><bsdf name='bsdf_0' type='diffuse'/>"));
+  EXPECT_EQ(s.materials[s.materials[2].nested[0]].kind, MaterialKind::diffuse);
+  EXPECT_SAYS(error_of(bsdf("blendbsdf", bsdf("diffuse"))), "needs 2 nested bsdfs, has 1");
+}
+
+TEST(Bsdf, Mixture) {
+  Material m = last(bsdf("mixturebsdf", word("weights", "0.3, 0.7") + bsdf("diffuse") + bsdf("plastic")));
+  EXPECT_EQ(m.kind, MaterialKind::mixture);
+  EXPECT_FLOAT_EQ(m.weights[0], 0.3f);
+  EXPECT_FLOAT_EQ(m.weights[1], 0.7f);
+  const std::string heavy = word("weights", "1, 3") + bsdf("diffuse") + bsdf("plastic");
+  const Scene s = load_inside(bsdf("mixturebsdf", heavy));
+  EXPECT_FLOAT_EQ(s.materials[2].weights[0], 0.25f);
+  EXPECT_TRUE(says(s.notes, "more than 1"));
+  EXPECT_SAYS(error_of(bsdf("mixturebsdf", heavy + "<boolean name='ensureEnergyConservation' value='false'/>")),
+              "more than 1");
+  EXPECT_SAYS(error_of(bsdf("mixturebsdf", word("weights", "0.5") + bsdf("diffuse") + bsdf("plastic"))), "2 numbers");
+  EXPECT_SAYS(error_of(bsdf("mixturebsdf", word("weights", "-0.5") + bsdf("diffuse"))), "negative");
+}
+
+TEST(Bsdf, BumpAndNormalMaps) {
+  Material m =
+      last(bsdf("bumpmap", "<texture name='map' type='checkerboard'/>" + number("scale", 3) + bsdf("diffuse")));
+  EXPECT_EQ(m.kind, MaterialKind::bumpmap);
+  EXPECT_NE(m.map.texture, none);
+  EXPECT_FLOAT_EQ(m.map_scale, 3);
+  EXPECT_NE(last(bsdf("bumpmap", checker + bsdf("diffuse"))).map.texture, none);
+  EXPECT_NE(last(bsdf("bumpmap", texture("anything") + bsdf("diffuse"))).map.texture, none);
+  EXPECT_SAYS(error_of(bsdf("bumpmap", bsdf("diffuse"))), "needs a nested <texture>");
+  m = last(bsdf("normalmap", texture("normalmap") + bsdf("diffuse")));
+  EXPECT_EQ(m.kind, MaterialKind::normalmap);
+  EXPECT_NE(m.map.texture, none);
+  const Scene s = load_inside(bsdf("normalmap", word("filename", "four.png") + number("tiles", 4) + bsdf("diffuse")));
+  const Texture& t = s.textures[s.materials.back().map.texture];
+  EXPECT_FLOAT_EQ(t.to_uv[0][0], 4);
+  EXPECT_FLOAT_EQ(s.images[t.image].decode[128], 128 / 255.0f);  // raw
+  EXPECT_SAYS(error_of(bsdf("normalmap", bsdf("diffuse"))), "needs <texture name=\"normalmap\"");
+}
+
+TEST(Bsdf, NullAndRoughDiffuse) {
+  EXPECT_EQ(last(bsdf("null")).kind, MaterialKind::null);
+  const Scene s = load_inside(bsdf("roughdiffuse", "<rgb name='reflectance' value='.2'/>" + number("alpha", 0.3)));
+  EXPECT_EQ(s.materials[0].kind, MaterialKind::diffuse);
+  EXPECT_TRUE(says(s.notes, "rendered as diffuse"));
+}
+
+TEST(Bsdf, UnknownOnes) {
+  for (const char* type :
+       {"coating", "roughcoating", "ward", "hk", "hair", "polarizer", "disneybsdf", "principledthin"}) {
+    EXPECT_SAYS(error_of(fmt::format("\n{}", bsdf(type))),
+                "test.xml:3: <bsdf type=\"" + std::string(type) + "\">: unknown bsdf");
+    EXPECT_EQ(last(bsdf(type), lenient()).kind, MaterialKind::diffuse);
+    EXPECT_EQ(last(bsdf(type, bsdf("plastic")), lenient()).kind, MaterialKind::plastic);
+  }
+  EXPECT_TRUE(says(load_inside(bsdf("hk"), lenient()).notes, "grey diffuse in its place"));
+}
+
+TEST(Bsdf, WhatCannotBeEvaluatedIsNamed) {
+  const std::string bent = bsdf("blendbsdf", bsdf("diffuse") + bsdf("bumpmap", checker + bsdf("plastic")));
+  EXPECT_SAYS(error_of(fmt::format("\n{}", bent)), "test.xml:3: <bsdf type=\"blendbsdf\">: ");
+  EXPECT_EQ(last(bent, lenient()).kind, MaterialKind::bumpmap);  // read, then the first of both took the blend's place
+}
+
+}  // namespace
+}  // namespace ajar

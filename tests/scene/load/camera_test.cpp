@@ -1,0 +1,195 @@
+// Sensor, film, filter, sampler, integrator.
+#include "scene_text.h"
+
+namespace ajar {
+namespace {
+
+using namespace kit;
+
+Scene read(const std::string& inside, const std::string& type = "perspective", const LoadOptions& options = {}) {
+  return load_scene_text("<scene version='3.0.0'><sensor type='" + type + "'>" + inside + "</sensor></scene>", assets(),
+                         "test.xml", options);
+}
+std::string error(const std::string& inside, const std::string& type = "perspective") {
+  try {
+    read(inside, type);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return {};
+}
+std::string film(int width, int height, const std::string& inside = "") {
+  return "<film type='hdrfilm'><integer name='width' value='" + std::to_string(width) +
+         "'/><integer name='height' value='" + std::to_string(height) + "'/>" + inside + "</film>";
+}
+std::string fov(double degrees, const std::string& axis) {
+  return "<float name='fov' value='" + std::to_string(degrees) + "'/><string name='fovAxis' value='" + axis + "'/>";
+}
+double fov_x(const Scene& s) { return 2 * std::atan(double(s.camera.plane.x)) * 180 / std::numbers::pi; }
+
+TEST(Sensors, FieldOfView) {
+  EXPECT_NEAR(fov_x(read("<float name='fov' value='60'/>")), 60, 1e-4);
+  EXPECT_NEAR(fov_x(read(film(400, 200) + fov(60, "x"))), 60, 1e-4);
+  const double from_y = 2 * std::atan(2 * std::tan(std::numbers::pi / 6)) * 180 / std::numbers::pi;
+  EXPECT_NEAR(fov_x(read(film(400, 200) + fov(60, "y"))), from_y, 1e-4);
+  EXPECT_NEAR(fov_x(read(film(400, 200) + fov(60, "smaller"))), from_y, 1e-4);
+  EXPECT_NEAR(fov_x(read(film(400, 200) + fov(60, "larger"))), 60, 1e-4);
+  EXPECT_NEAR(fov_x(read(film(200, 400) + fov(60, "smaller"))), 60, 1e-4);
+  const Camera c = read(film(400, 300) + fov(60, "diagonal")).camera;
+  EXPECT_NEAR(std::hypot(c.plane.x, c.plane.y), std::tan(std::numbers::pi / 6), 1e-6);
+  EXPECT_NEAR(c.plane.x / c.plane.y, 4.0 / 3, 1e-6);
+}
+
+TEST(Sensors, FocalLength) {  // a 35 mm film: 36 x 24, diagonal 43.27 mm
+  EXPECT_NEAR(fov_x(read(film(360, 240) + "<string name='focalLength' value='50mm'/>")), 39.5978, 1e-3);
+  EXPECT_NEAR(fov_x(read(film(360, 240))), 39.5978, 1e-3);
+  EXPECT_NEAR(fov_x(read(film(360, 240) + "<string name='focal_length' value='18 mm'/>")), 90, 1e-3);
+  EXPECT_NEAR(fov_x(read(film(360, 240) + "<float name='focal_length' value='18'/>")), 90, 1e-3);
+  EXPECT_SAYS(error("<string name='focal_length' value='wide'/>"), "focal_length should be like \"50mm\"");
+}
+
+// Camera space: x to the left, y up, z ahead.
+TEST(Sensors, LooksWhereToWorldSays) {
+  const Scene s = read(film(100, 100) + fov(90, "x") +
+                       "<transform name='toWorld'><lookat origin='0,0,5' target='0,0,0' up='0,1,0'/></transform>");
+  CameraRay ray = generate(s.camera, {50, 50}, {0.5f, 0.5f});
+  EXPECT_RGB(ray.o, 0, 0, 5, 1e-6);
+  EXPECT_RGB(ray.d, 0, 0, -1, 1e-6);
+  ray = generate(s.camera, {100, 50}, {0.5f, 0.5f});  // right edge
+  EXPECT_RGB(ray.d, std::sqrt(0.5), 0, -std::sqrt(0.5), 1e-6);
+  ray = generate(s.camera, {50, 0}, {0.5f, 0.5f});  // upper edge
+  EXPECT_RGB(ray.d, 0, std::sqrt(0.5), -std::sqrt(0.5), 1e-6);
+  const Scene mirrored =
+      read(film(100, 100) + fov(90, "x") +
+           "<transform name='toWorld'><scale x='-1'/><lookat origin='0,0,5' target='0,0,0' up='0,1,0'/></transform>");
+  EXPECT_RGB(generate(mirrored.camera, {100, 50}, {0.5f, 0.5f}).d, -std::sqrt(0.5), 0, -std::sqrt(0.5), 1e-6);
+}
+
+TEST(Sensors, ScaleIsFoldedIntoTheView) {
+  const Camera c =
+      read(film(100, 100) + fov(90, "x") + "<transform name='to_world'><scale x='6' y='2' z='2'/></transform>").camera;
+  EXPECT_NEAR(c.plane.x, 3, 1e-5);
+  EXPECT_NEAR(c.plane.y, 1, 1e-5);
+  EXPECT_NEAR(glm::length(Vec3(c.to_world[0])), 1, 1e-6);
+  EXPECT_SAYS(error("<transform name='to_world'><scale value='0'/></transform>"), "singular");
+  EXPECT_SAYS(error("<transform name='to_world'><matrix value='1 1 0 0 0 1 0 0 0 0 1 0 0 0 0 1'/></transform>"),
+              "sheared");
+}
+
+TEST(Sensors, Orthographic) {
+  const Camera c =
+      read(film(200, 100) + "<transform name='to_world'><scale x='10' y='10'/><translate z='-5'/></transform><float name='near_clip' value='0'/>",
+           "orthographic")
+          .camera;
+  EXPECT_EQ(c.kind, CameraKind::orthographic);
+  EXPECT_NEAR(c.plane.x, 10, 1e-5);
+  EXPECT_NEAR(c.plane.y, 5, 1e-5);
+  const CameraRay ray = generate(c, {0, 0}, {0.5f, 0.5f});
+  EXPECT_RGB(ray.o, 10, 5, -5, 1e-5);
+  EXPECT_RGB(ray.d, 0, 0, 1, 1e-6);
+}
+
+TEST(Sensors, ThinLens) {
+  const Camera c =
+      read("<float name='apertureRadius' value='0.1'/><float name='focus_distance' value='4'/>", "thinlens").camera;
+  EXPECT_EQ(c.kind, CameraKind::thinlens);
+  EXPECT_FLOAT_EQ(c.aperture, 0.1f);
+  EXPECT_FLOAT_EQ(c.focus, 4);
+  EXPECT_SAYS(error("", "thinlens"), "needs an aperture_radius");
+  EXPECT_SAYS(error("<float name='aperture_radius' value='-1'/>", "thinlens"), "should be greater than 0");
+}
+
+TEST(Sensors, ClipAndPrincipalPoint) {
+  const Camera c = read(
+                       "<float name='nearClip' value='0.5'/><float name='far_clip' value='20'/>"
+                       "<float name='principalPointOffsetX' value='0.25'/>")
+                       .camera;
+  EXPECT_FLOAT_EQ(c.near_clip, 0.5f);
+  EXPECT_FLOAT_EQ(c.far_clip, 20);
+  EXPECT_FLOAT_EQ(c.principal.x, 0.25f);
+  EXPECT_SAYS(error("<float name='near_clip' value='5'/><float name='far_clip' value='2'/>"), "near < far");
+  EXPECT_SAYS(error("<float name='fov' value='180'/>"), "fov should be");
+  EXPECT_SAYS(error("<float name='fov' value='0'/>"), "fov should be");
+}
+
+TEST(Films, SizeAndCrop) {
+  Camera c = read("").camera;
+  EXPECT_EQ(c.width, 768);
+  EXPECT_EQ(c.height, 576);
+  EXPECT_EQ(c.crop_width, 768);
+  c = read(film(400, 300,
+                "<integer name='cropOffsetX' value='100'/><integer name='crop_offset_y' value='50'/>"
+                "<integer name='crop_width' value='200'/><integer name='cropHeight' value='100'/>"))
+          .camera;
+  EXPECT_EQ(c.crop_x, 100);
+  EXPECT_EQ(c.crop_y, 50);
+  EXPECT_EQ(c.crop_width, 200);
+  EXPECT_EQ(c.crop_height, 100);
+  for (const char* type : {"ldrfilm", "mfilm"}) EXPECT_EQ(error("<film type='" + std::string(type) + "'/>"), "");
+  EXPECT_SAYS(error("<film type='streakhdrfilm'/>"), "unknown film");
+  EXPECT_SAYS(error(film(0, 10)), "from 1 to 65536");
+  EXPECT_SAYS(error(film(100000, 10)), "from 1 to 65536");
+  EXPECT_SAYS(error("<film type='hdrfilm'><integer name='width' value='12.5'/></film>"), "whole number");
+  EXPECT_SAYS(error(film(10, 10, "<integer name='crop_width' value='11'/>")), "from 1 to 10");
+}
+
+TEST(Films, Filters) {
+  const auto filter = [](const std::string& type, const std::string& inside = "") {
+    return read(film(10, 10, "<rfilter type='" + type + "'>" + inside + "</rfilter>")).filter;
+  };
+  EXPECT_EQ(read("").filter.kind, FilterKind::gaussian);
+  EXPECT_EQ(filter("box").kind, FilterKind::box);
+  EXPECT_EQ(filter("tent").kind, FilterKind::tent);
+  EXPECT_EQ(filter("mitchell").kind, FilterKind::mitchell);
+  EXPECT_EQ(filter("catmullrom").kind, FilterKind::catmullrom);
+  EXPECT_EQ(filter("lanczos", "<integer name='lobes' value='2'/>").kind, FilterKind::lanczos);
+  EXPECT_EQ(filter("gaussian", "<float name='stddev' value='0.25'/>").a, 0.25f);
+  EXPECT_EQ(filter("tent", "<float name='radius' value='1.5'/>").radius, 1.5f);
+  EXPECT_SAYS(error(film(10, 10, "<rfilter type='sharp'/>")), "unknown filter; supported: box, tent");
+  EXPECT_SAYS(error(film(10, 10, "<rfilter type='gaussian'><float name='stddev' value='100'/></rfilter>")),
+              "stddev should be");
+}
+
+TEST(Sensors, FilmAndSamplerByReference) {
+  const Scene s = load_scene_text(
+      "<scene><film type='hdrfilm' id='f'><integer name='width' value='5'/></film><sampler type='independent' id='s'>"
+      "<integer name='sampleCount' value='99999999999'/></sampler><sensor type='perspective'><ref id='f'/><ref "
+      "id='s'/></sensor></scene>",
+      "", "test.xml");
+  EXPECT_EQ(s.camera.width, 5);
+  EXPECT_GT(s.hints.spp, 1000000);  // as good as endless
+}
+
+TEST(Sensors, FirstOfSeveral) {
+  const Scene s = load_inside("<sensor type='orthographic'/>");
+  EXPECT_EQ(s.camera.kind, CameraKind::perspective);
+  EXPECT_TRUE(says(s.notes, "several sensors"));
+  EXPECT_SAYS(error("", "irradiancemeter"), "unknown sensor; supported: perspective, thinlens, orthographic");
+}
+
+TEST(Integrators, AreHints) {
+  const auto hints = [](const std::string& text) { return load_inside(text).hints; };
+  Hints h = hints("<integrator type='path'><integer name='maxDepth' value='7'/></integrator>");
+  EXPECT_EQ(h.integrator, "path");
+  EXPECT_EQ(h.max_depth, 7);
+  EXPECT_EQ(hints("").max_depth, -1);
+  EXPECT_EQ(hints("<integrator type='volpath'/>").integrator, "path");
+  EXPECT_EQ(hints("<integrator type='ptracer'/>").integrator, "light");
+  h = hints("<integrator type='direct'/>");
+  EXPECT_EQ(h.integrator, "path");
+  EXPECT_EQ(h.max_depth, 2);
+  h = hints(
+      "<integrator type='aov'><string name='aovs' value='n:sh_normal'/><integrator type='moment'><integrator "
+      "type='bdpt'>"
+      "<integer name='max_depth' value='5'/></integrator></integrator></integrator>");
+  EXPECT_EQ(h.integrator, "bdpt");
+  EXPECT_EQ(h.max_depth, 5);
+  const Scene s = load_inside("<integrator type='manifold_path'><integer name='max_depth' value='-1'/></integrator>");
+  EXPECT_TRUE(says(s.notes, "Ajar has no integrator of this name"));
+  EXPECT_TRUE(
+      says(load_inside("<integrator type='path'><boolean name='hideEmitters' value='true'/></integrator>").notes,
+           "hide_emitters"));
+}
+
+}  // namespace
+}  // namespace ajar

@@ -1,0 +1,96 @@
+// Emitters: parameters in both spellings, defaults, what is refused.
+#include "scene_text.h"
+
+namespace ajar {
+namespace {
+
+using namespace kit;
+
+std::string emitter(const std::string& type, const std::string& inside = "") {
+  return "<emitter type='" + type + "'>" + inside + "</emitter>";
+}
+Light read(const std::string& type, const std::string& inside = "") {
+  return load_inside(emitter(type, inside)).lights.at(0);
+}
+const std::string turned =
+    "<transform name='toWorld'><rotate y='1' angle='90'/><translate x='1' y='2' z='3'/></transform>";
+
+TEST(Emitters, Area) {
+  const Scene s = load_inside(
+      "<shape type='sphere'><emitter type='area'><rgb name='radiance' value='1 2 3'/>"
+      "<float name='samplingWeight' value='5'/></emitter></shape>");
+  EXPECT_EQ(s.lights[0].kind, LightKind::area);
+  EXPECT_RGB(s.lights[0].radiance.value, 1, 2, 3, 1e-6);
+  EXPECT_FLOAT_EQ(s.lights[0].sampling_weight, 5);
+  EXPECT_SAYS(error_of(emitter("area")), "belongs inside the <shape>");
+  // defined at the top, named by a shape
+  const Scene named = load_inside("<emitter type='area' id='e'/><shape type='sphere'><ref id='e'/></shape>");
+  EXPECT_EQ(named.lights.size(), 1u);
+  EXPECT_EQ(named.shapes[0].light, 0u);
+}
+
+TEST(Emitters, Constant) {
+  EXPECT_RGB(read("constant").radiance.value, 1, 1, 1, 0);
+  EXPECT_RGB(read("constant", "<spectrum name='radiance' value='0.3'/>").radiance.value, 0.3, 0.3, 0.3, 1e-6);
+}
+
+TEST(Emitters, Envmap) {
+  const std::string file = "<string name='filename' value='four.png'/>";
+  const Scene s = load_inside(
+      emitter("envmap", file + "<float name='scale' value='3'/>" +
+                            "<transform name='to_world'><scale value='7'/><rotate y='1' angle='90'/></transform>"));
+  EXPECT_EQ(s.lights[0].kind, LightKind::envmap);
+  EXPECT_EQ(s.environments.size(), 1u);
+  EXPECT_FLOAT_EQ(s.environments[0].scale, 3);
+  EXPECT_RGB(Vec3(s.lights[0].to_world * Vec4(1, 0, 0, 0)), 0, 0, -1, 1e-6);  // without the scale
+  EXPECT_SAYS(error_of(emitter("envmap")), "needs <string name=\"filename\"");
+  EXPECT_SAYS(error_of(emitter("envmap", file + "<float name='scale' value='-3'/>")), "negative");
+}
+
+TEST(Emitters, Point) {
+  const Light l = read("point", "<point name='position' x='1' z='3'/><rgb name='intensity' value='4 5 6'/>");
+  EXPECT_EQ(l.kind, LightKind::point);
+  EXPECT_RGB(l.position, 1, 0, 3, 0);
+  EXPECT_RGB(l.radiance.value, 4, 5, 6, 1e-6);
+  EXPECT_RGB(read("point", turned).position, 1, 2, 3, 1e-6);
+}
+
+TEST(Emitters, Spot) {
+  Light l = read("spot", turned + "<float name='cutoffAngle' value='60'/>");
+  EXPECT_EQ(l.kind, LightKind::spot);
+  EXPECT_RGB(l.position, 1, 2, 3, 1e-6);
+  EXPECT_RGB(l.direction, 1, 0, 0, 1e-6);
+  EXPECT_NEAR(l.cos_cutoff, 0.5, 1e-6);
+  EXPECT_NEAR(l.cos_beam, std::cos(pi / 4), 1e-6);
+  l = read("spot", "<float name='beam_width' value='0'/>");
+  EXPECT_NEAR(l.cos_cutoff, std::cos(20 * pi / 180), 1e-6);
+  EXPECT_EQ(l.cos_beam, 1);
+  EXPECT_SAYS(error_of(emitter("spot", "<float name='cutoff_angle' value='0'/>")), "cutoff_angle");
+  EXPECT_SAYS(error_of(emitter("spot", "<float name='beam_width' value='30'/>")), "beam_width");
+  const std::string textured = emitter("spot", "<texture name='texture' type='checkerboard'/>");
+  EXPECT_SAYS(error_of(textured), "texture on a spot light");
+  EXPECT_EQ(load_inside(textured, lenient()).lights.size(), 1u);
+}
+
+TEST(Emitters, Directional) {
+  const Light l =
+      read("directional", "<vector name='direction' x='0' y='-2' z='0'/><rgb name='irradiance' value='2'/>");
+  EXPECT_EQ(l.kind, LightKind::directional);
+  EXPECT_RGB(l.direction, 0, -1, 0, 1e-6);
+  EXPECT_RGB(l.radiance.value, 2, 2, 2, 1e-6);
+  EXPECT_RGB(read("directional", turned).direction, 1, 0, 0, 1e-6);
+  EXPECT_SAYS(error_of(emitter("directional", "<vector name='direction' value='0, 0, 0'/>")), "zero vector");
+}
+
+TEST(Emitters, UnknownOnes) {
+  for (const char* type : {"sunsky", "sun", "sky", "projector", "collimated", "ies"}) {
+    EXPECT_SAYS(error_of(emitter(type)), "unknown emitter; supported: area, envmap");
+    EXPECT_TRUE(load_inside(emitter(type), lenient()).lights.empty());
+  }
+  EXPECT_SAYS(error_of(emitter("constant", "<float name='sampling_weight' value='-1'/>")), "sampling_weight");
+  EXPECT_TRUE(says(load_inside("<shape type='cube'/>").notes, "no light"));
+  EXPECT_TRUE(says(load_inside("").notes, "no shapes"));
+}
+
+}  // namespace
+}  // namespace ajar

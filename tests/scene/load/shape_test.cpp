@@ -1,0 +1,175 @@
+// Shapes, groups, instances and what hangs on them.
+#include <fmt/format.h>
+
+#include "scene_text.h"
+
+namespace ajar {
+namespace {
+
+using namespace kit;
+
+std::string shape(const std::string& type, const std::string& inside = "") {
+  return fmt::format("<shape type='{}'>{}</shape>", type, inside);
+}
+std::string file(const std::string& name) { return fmt::format("<string name='filename' value='{}'/>", name); }
+const std::string flip = "<boolean name='flipNormals' value='true'/>";
+const std::string light = "<emitter type='area'/>";
+
+Vec3 normal(const Mesh& mesh, size_t i = 0) {
+  const glm::uvec3& t = mesh.triangles[i];
+  return glm::normalize(
+      glm::cross(mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]));
+}
+
+TEST(Shapes, Sphere) {
+  Scene s = load_inside(shape("sphere",
+                              "<point name='center' x='1' y='2' z='3'/><float name='radius' value='2'/>"
+                              "<transform name='to_world'><scale value='2'/><translate x='10'/></transform>"));
+  ASSERT_EQ(s.shapes[0].kind, ShapeKind::sphere);
+  EXPECT_RGB(Vec3(s.shapes[0].to_world * Vec4(0, 0, 0, 1)), 12, 4, 6, 1e-5);
+  EXPECT_RGB(Vec3(s.shapes[0].to_world * Vec4(0, 0, 1, 1)), 12, 4, 10, 1e-5);
+  EXPECT_RGB(Vec3(s.shapes[0].to_object * Vec4(12, 4, 10, 1)), 0, 0, 1, 1e-6);
+  EXPECT_TRUE(load_inside(shape("sphere", flip)).shapes[0].flip);
+  EXPECT_RGB(Vec3(load_inside(shape("sphere", "<point name='center' value='1, 2, 3'/>")).shapes[0].to_world[3]), 1, 2,
+             3, 0);
+  EXPECT_SAYS(error_of(shape("sphere", "<float name='radius' value='-1'/>")), "-1 should be greater than 0");
+  EXPECT_SAYS(error_of(shape("sphere", "<float name='radius' value='0'/>")), "should be greater than 0");
+}
+
+TEST(Shapes, StretchedSphereBecomesAMesh) {
+  const Scene s = load_inside(shape("sphere", "<transform name='to_world'><scale x='2'/></transform>"));
+  EXPECT_EQ(s.shapes[0].kind, ShapeKind::mesh);
+  EXPECT_TRUE(says(s.notes, "ellipsoid"));
+  for (const Vec3& p : s.meshes[0].positions) EXPECT_NEAR(p.x * p.x / 4 + p.y * p.y + p.z * p.z, 1, 1e-5);
+}
+
+TEST(Shapes, RectangleAndCube) {
+  Scene s = load_inside(shape("rectangle"));
+  EXPECT_EQ(s.meshes[0].triangles.size(), 2u);
+  EXPECT_RGB(normal(s.meshes[0]), 0, 0, 1, 1e-6);
+  EXPECT_RGB(normal(load_inside(shape("rectangle", flip)).meshes[0]), 0, 0, -1, 1e-6);
+  EXPECT_EQ(load_inside(shape("cube")).meshes[0].triangles.size(), 12u);
+  EXPECT_EQ(load_inside(shape("Rectangle")).meshes[0].triangles.size(), 2u);
+}
+
+TEST(Shapes, DiskAndCylinder) {
+  Scene s = load_inside(shape("disk", "<transform name='toWorld'><scale value='3'/></transform>"));
+  EXPECT_EQ(s.shapes[0].kind, ShapeKind::disk);
+  EXPECT_FLOAT_EQ(s.shapes[0].to_world[0][0], 3);
+  s = load_inside(
+      shape("cylinder", "<point name='p0' x='1'/><point name='p1' x='1' y='4'/><float name='radius' value='0.5'/>"));
+  const Mat4 m = s.shapes[0].to_world;
+  EXPECT_EQ(s.shapes[0].kind, ShapeKind::cylinder);
+  EXPECT_RGB(Vec3(m * Vec4(0, 0, 0, 1)), 1, 0, 0, 1e-6);
+  EXPECT_RGB(Vec3(m * Vec4(0, 0, 1, 1)), 1, 4, 0, 1e-6);
+  EXPECT_NEAR(glm::length(Vec3(m[0])), 0.5, 1e-6);
+  EXPECT_NEAR(glm::dot(Vec3(m[0]), Vec3(m[2])), 0, 1e-6);
+  EXPECT_GT(glm::determinant(m), 0);
+  s = load_inside(shape("cylinder"));
+  EXPECT_RGB(Vec3(s.shapes[0].to_world * Vec4(0, 0, 1, 1)), 0, 0, 1, 1e-6);
+  EXPECT_SAYS(error_of(shape("cylinder", "<point name='p0' z='1'/>")), "the same point");
+}
+
+TEST(Shapes, MeshFiles) {
+  Scene s =
+      load_inside(shape("obj", file("two words.obj") + "<transform name='to_world'><translate x='5'/></transform>"));
+  EXPECT_EQ(s.meshes[0].triangles.size(), 1u);
+  EXPECT_FLOAT_EQ(s.meshes[0].positions[1].x, 6);
+  EXPECT_EQ(load_inside(shape("obj", file("folder\\inner.obj"))).meshes.size(), 1u);
+  EXPECT_TRUE(load_inside(shape("obj", file("two words.obj") + "<boolean name='faceNormals' value='true'/>"))
+                  .meshes[0]
+                  .normals.empty());
+  s = load_inside(shape("ply", file("coloured.ply") + flip));
+  EXPECT_RGB(normal(s.meshes[0]), 0, 0, -1, 1e-6);
+  s = load_inside(shape("obj", file("empty.obj")));
+  EXPECT_TRUE(s.shapes.empty());
+  EXPECT_TRUE(says(s.notes, "has no faces"));
+  EXPECT_SAYS(error_of(fmt::format("\n{}", shape("obj"))),
+              "test.xml:3: <shape type=\"obj\">: needs <string name=\"filename\"");
+  EXPECT_SAYS(error_of(shape("ply", file("two words.obj"))), "test.xml:2: <shape type=\"ply\">: ");
+  EXPECT_SAYS(error_of(shape("serialized", file("two words.obj") + "<integer name='shapeIndex' value='-1'/>")),
+              "whole number");
+}
+
+TEST(Shapes, OneFileManyPlaces) {
+  const auto placed = [](const std::string& steps) {
+    return shape("obj", file("two words.obj") + "<transform name='to_world'>" + steps + "</transform>");
+  };
+  const Scene s = load_inside(placed("") + placed("<translate x='1'/>") + placed("<scale x='2'/>") +
+                              placed("<scale x='-1'/>") + placed("<scale value='3'/>"));
+  ASSERT_EQ(s.meshes.size(), 5u);
+  const float ends[] = {1, 2, 2, -1, 3};
+  for (size_t i = 0; i < 5; ++i) EXPECT_FLOAT_EQ(s.meshes[i].positions[1].x, ends[i]);
+}
+
+TEST(Shapes, Materials) {
+  Scene s = load_inside(shape("sphere") + shape("sphere") + shape("sphere", light));
+  EXPECT_EQ(s.shapes[0].material, s.shapes[1].material);
+  EXPECT_FLOAT_EQ(s.materials[s.shapes[0].material].reflectance.value.x, 0.5f);
+  EXPECT_FLOAT_EQ(s.materials[s.shapes[2].material].reflectance.value.x, 0);  // as in Mitsuba
+  s = load_inside(shape("sphere", "<bsdf name='bsdf' type='null'/>"));
+  EXPECT_EQ(s.materials[s.shapes[0].material].kind, MaterialKind::null);
+  EXPECT_SAYS(error_of(shape("sphere", "<bsdf type='null'/><bsdf type='null'/>")), "more than one bsdf");
+}
+
+TEST(Shapes, Emitters) {
+  const Scene s = load_inside(shape("cube") + shape("sphere", light));
+  ASSERT_EQ(s.lights.size(), 1u);
+  EXPECT_EQ(s.shapes[1].light, 0u);
+  EXPECT_EQ(s.lights[0].shape, 1u);
+  EXPECT_EQ(s.shapes[0].light, none);
+  EXPECT_SAYS(error_of(shape("sphere", light + light)), "more than one emitter");
+  EXPECT_SAYS(error_of(shape("sphere", "<emitter type='point'/>")), "only an area light");
+}
+
+TEST(Shapes, GroupsAndInstances) {
+  const std::string group = fmt::format("<shape type='shapegroup' id='g'>{}{}</shape>", shape("cube"), shape("sphere"));
+  const auto instance = [](const std::string& steps) {
+    return shape("instance", "<ref id='g'/><transform name='toWorld'>" + steps + "</transform>");
+  };
+  for (const std::string& text :
+       {group + instance("<scale x='-1'/>") + instance(""), instance("<scale x='-1'/>") + instance("") + group}) {
+    const Scene s = load_inside(text);
+    EXPECT_EQ(s.groups, 1u);
+    EXPECT_EQ(s.shapes.size(), 2u);
+    EXPECT_EQ(s.shapes[0].group, 0u);
+    ASSERT_EQ(s.instances.size(), 2u);
+    EXPECT_FLOAT_EQ(s.instances[0].to_world[0][0], -1);
+    EXPECT_FLOAT_EQ(s.instances[0].to_object[0][0], -1);
+  }
+  EXPECT_SAYS(error_of(shape("instance")), "needs a <ref> to one <shape type=\"shapegroup\">");
+  EXPECT_SAYS(error_of(group + instance("<scale value='0'/>")), "singular");
+  EXPECT_SAYS(error_of(shape("shapegroup", shape("sphere", light))), "light inside a shapegroup");
+}
+
+TEST(Shapes, Merge) {
+  const Scene s = load_inside(shape("merge", shape("cube") + shape("sphere")));
+  EXPECT_EQ(s.shapes.size(), 2u);
+  EXPECT_EQ(s.shapes[0].group, none);
+}
+
+TEST(Shapes, MediaAreRefused) {
+  const std::string inner = shape("cube", "<medium name='interior' type='homogeneous'/>");
+  EXPECT_SAYS(error_of(inner), "participating media are not supported");
+  EXPECT_TRUE(says(load_inside(inner, lenient()).notes, "participating media are not supported"));
+  EXPECT_EQ(load_inside(inner, lenient()).shapes.size(), 1u);
+  const std::string named = "<medium type='homogeneous' id='m'/>";
+  EXPECT_SAYS(error_of(named + shape("cube", "<ref name='exterior' id='m'/>")), "participating media");
+  EXPECT_TRUE(says(load_inside(named + shape("cube")).notes, "participating media"));
+}
+
+TEST(Shapes, UnknownOnes) {
+  for (const char* type : {"hair", "bsplinecurve", "sdfgrid", "heightfield"}) {
+    EXPECT_SAYS(error_of(shape(type)), "unknown shape; supported: obj, ply, serialized, rectangle");
+    EXPECT_TRUE(load_inside(shape(type), lenient()).shapes.empty());
+  }
+}
+
+TEST(Shapes, FarAwayIsAnError) {
+  EXPECT_NE(error_of(shape("sphere", "<point name='center' x='3e38'/>")), "");
+  EXPECT_NE(
+      error_of(shape("cube", "<transform name='to_world'><scale value='3e38'/><translate x='3e38'/></transform>")), "");
+}
+
+}  // namespace
+}  // namespace ajar

@@ -1,0 +1,146 @@
+// Textures and images.
+#include "scene_text.h"
+
+namespace ajar {
+namespace {
+
+using namespace kit;
+
+Scene with(const std::string& texture) { return load_inside("<bsdf type='diffuse'>" + texture + "</bsdf>"); }
+std::string bitmap(const std::string& inside = "", const std::string& tag = "texture") {
+  return "<" + tag + " name='reflectance' type='bitmap'><string name='filename' value='four.png'/>" + inside + "</" +
+         tag + ">";
+}
+// Value at (u, v) of the first bsdf's reflectance.
+Rgb at(const Scene& scene, float u, float v) {
+  Surface surface;
+  surface.uv = {u, v};
+  return eval(scene, scene.materials[0].reflectance, surface);
+}
+const std::string nearest = "<string name='filter_type' value='nearest'/>";
+
+TEST(TextureFile, TopRowIsAtVZero) {
+  const Scene s = with(bitmap(nearest));
+  EXPECT_RGB(at(s, 0.25f, 0.25f), 1, 0, 0, 1e-6);
+  EXPECT_RGB(at(s, 0.75f, 0.25f), 0, 1, 0, 1e-6);
+  EXPECT_RGB(at(s, 0.25f, 0.75f), 0, 0, 1, 1e-6);
+  EXPECT_RGB(at(s, 0.75f, 0.75f), 1, 1, 1, 1e-6);
+}
+
+// An OBJ file counts v from below, and is turned when it is read: the upper row of the image is up.
+TEST(TextureFile, StandsUprightOnObj) {
+  const std::string shape = "<shape type='obj'><string name='filename' value='two words.obj'/>";
+  EXPECT_FLOAT_EQ(load_inside(shape + "</shape>").meshes[0].uvs[2].y, 0);  // vt 0 1
+  EXPECT_FLOAT_EQ(load_inside(shape + "<boolean name='flipTexCoords' value='false'/></shape>").meshes[0].uvs[2].y, 1);
+}
+
+TEST(TextureFile, ScaleOffsetAndTransform) {
+  const Scene old = with(bitmap(nearest + "<float name='uscale' value='0.5'/><float name='voffset' value='0.5'/>"));
+  EXPECT_RGB(at(old, 0.75f, 0.25f), 0, 0, 1, 1e-6);  // u 0.375, v 0.75
+  const Scene steps =
+      with(bitmap(nearest + "<transform name='to_uv'><scale x='0.5'/><translate y='0.5'/></transform>"));
+  EXPECT_RGB(at(steps, 0.75f, 0.25f), 0, 0, 1, 1e-6);
+  const Scene matrix =
+      with(bitmap(nearest + "<transform name='to_uv'><matrix value='.5 0 0 0 1 .5 0 0 1'/></transform>"));
+  EXPECT_RGB(at(matrix, 0.75f, 0.25f), 0, 0, 1, 1e-6);
+  const Scene turned = with(bitmap(nearest + "<transform name='toUv'><rotate z='1' angle='90'/></transform>"));
+  EXPECT_RGB(at(turned, 0.25f, 0.25f), 0, 1, 0, 1e-6);  // (u, v) -> (-v, u) = (-0.25, 0.25) -> u 0.75
+}
+
+TEST(TextureFile, WrapAndFilter) {
+  Texture t =
+      with(bitmap("<string name='wrapMode' value='clamp'/><string name='filterType' value='trilinear'/>")).textures[0];
+  EXPECT_EQ(t.wrap_u, Wrap::clamp);
+  EXPECT_EQ(t.wrap_v, Wrap::clamp);
+  EXPECT_FALSE(t.nearest);
+  t = with(bitmap("<string name='wrapModeU' value='mirror'/>")).textures[0];
+  EXPECT_EQ(t.wrap_u, Wrap::mirror);
+  EXPECT_EQ(t.wrap_v, Wrap::repeat);
+  EXPECT_SAYS(error_of("<bsdf type='diffuse'>" + bitmap("<string name='wrap_mode' value='twist'/>") + "</bsdf>"),
+              "known are repeat, mirror, clamp, zero, one");
+}
+
+TEST(TextureFile, RawGammaAndChannel) {
+  EXPECT_NEAR(with(bitmap()).images[0].decode[128], 0.21586, 1e-4);
+  EXPECT_NEAR(with(bitmap("<boolean name='raw' value='true'/>")).images[0].decode[128], 128 / 255.0, 1e-6);
+  EXPECT_NEAR(with(bitmap("<float name='gamma' value='1'/>")).images[0].decode[128], 128 / 255.0, 1e-6);
+  EXPECT_NEAR(with(bitmap("<float name='gamma' value='2.2'/>")).images[0].decode[128], std::pow(128 / 255.0, 2.2),
+              1e-5);
+  EXPECT_EQ(with(bitmap("<string name='channel' value='g'/>")).textures[0].channel, Channel::green);
+  EXPECT_EQ(with(bitmap("<string name='channel' value='a'/>")).textures[0].channel, Channel::alpha);
+}
+
+TEST(TextureFile, IsReadOnce) {
+  const Scene s =
+      load_inside("<bsdf type='diffuse'>" + bitmap() + "</bsdf><bsdf type='diffuse'>" + bitmap() + "</bsdf>" +
+                  "<bsdf type='diffuse'>" + bitmap("<boolean name='raw' value='true'/>") + "</bsdf>");
+  EXPECT_EQ(s.textures.size(), 3u);
+  EXPECT_EQ(s.images.size(), 2u);
+}
+
+TEST(TextureFile, SpectrumMayNameATexture) {
+  EXPECT_NE(with(bitmap("", "spectrum")).materials[0].reflectance.texture, none);
+}
+
+TEST(TextureFile, MissingOnesAreErrors) {
+  const auto error = [](const std::string& inside) {
+    return error_of("<bsdf type='diffuse'><texture name='reflectance' type='bitmap'>" + inside + "</texture></bsdf>");
+  };
+  EXPECT_SAYS(error(""), "needs <string name=\"filename\"");
+  EXPECT_SAYS(error("<string name='filename' value='none.png'/>"),
+              "test.xml:2: <string name=\"filename\">: there is no file \"none.png\"");
+  EXPECT_SAYS(error("<string name='filename' value='fragment.xml'/>"), "fragment.xml: cannot read the image");
+}
+
+TEST(TextureKinds, Checkerboard) {
+  const Scene s = with(
+      "<texture name='reflectance' type='checkerboard'><rgb name='color0' value='.1'/>"
+      "<rgb name='color1' value='.9'/><transform name='to_uv'><scale x='2' y='2'/></transform></texture>");
+  EXPECT_RGB(at(s, 0.1f, 0.1f), 0.1, 0.1, 0.1, 1e-6);
+  EXPECT_RGB(at(s, 0.3f, 0.1f), 0.9, 0.9, 0.9, 1e-6);
+  EXPECT_RGB(at(with("<texture name='reflectance' type='checkerboard'/>"), 0.1f, 0.1f), 0.4, 0.4, 0.4, 1e-6);
+  EXPECT_RGB(at(with("<texture name='reflectance' type='checkerboard'/>"), 0.6f, 0.1f), 0.2, 0.2, 0.2, 1e-6);
+}
+
+TEST(TextureKinds, LightsMayBeBrighterThanSurfaces) {
+  const std::string checker = "<texture id='t' type='checkerboard'><rgb name='color0' value='30'/></texture>";
+  const Scene s = load_inside(checker +
+                              "<shape type='sphere'><emitter type='area'><ref name='radiance' id='t'/></emitter>"
+                              "<bsdf type='diffuse'><ref name='reflectance' id='t'/></bsdf></shape>");
+  EXPECT_FLOAT_EQ(s.textures[s.lights[0].radiance.texture].color0.value.x, 30);
+  EXPECT_FLOAT_EQ(s.textures[s.materials[0].reflectance.texture].color0.value.x, 1);
+}
+
+TEST(TextureKinds, Scale) {
+  const Scene s = with(
+      "<texture name='diffuseReflectance' type='scale'><float name='scale' value='0.5'/>"
+      "<texture type='checkerboard'/></texture>");
+  EXPECT_RGB(at(s, 0.1f, 0.1f), 0.2, 0.2, 0.2, 1e-6);
+  EXPECT_SAYS(error_of("<bsdf type='diffuse'><texture name='reflectance' type='scale'/></bsdf>"),
+              "needs a nested <texture>");
+}
+
+TEST(TextureKinds, MeshAttribute) {
+  const std::string shape =
+      "<shape type='ply'><string name='filename' value='coloured.ply'/><bsdf type='diffuse'>"
+      "<texture name='reflectance' type='mesh_attribute'><string name='name' "
+      "value='vertex_color'/></texture></bsdf></shape>";
+  const Scene s = load_inside(shape);
+  EXPECT_EQ(s.textures[0].kind, TextureKind::mesh_attribute);
+  Surface surface;
+  surface.shape = 0;
+  surface.bary = {1, 0};
+  EXPECT_RGB(eval(s, s.materials[0].reflectance, surface), 0, 1, 0, 1e-6);
+  EXPECT_SAYS(error_of("<bsdf type='diffuse'><texture name='reflectance' type='mesh_attribute'>"
+                       "<string name='name' value='face_color'/></texture></bsdf>"),
+              "face_color");
+}
+
+TEST(TextureKinds, Unknown) {
+  const std::string text = "<bsdf type='diffuse'><texture name='reflectance' type='gridtexture'/></bsdf>";
+  EXPECT_SAYS(error_of(text), "unknown texture; supported: bitmap, checkerboard");
+  EXPECT_RGB(at(load_inside(text, lenient()), 0.1f, 0.6f), 0.5, 0.5, 0.5, 1e-6);
+}
+
+}  // namespace
+}  // namespace ajar

@@ -1,0 +1,78 @@
+// <transform> in all its steps.
+#include "scene_text.h"
+
+namespace ajar {
+namespace {
+
+using namespace kit;
+
+// Where the transform takes a point.
+Vec3 moved(const std::string& steps, const Vec3& p) {
+  const Scene s = load_inside("<shape type='disk'><transform name='toWorld'>" + steps + "</transform></shape>");
+  return Vec3(s.shapes[0].to_world * Vec4(p, 1));
+}
+std::string error(const std::string& steps, const std::string& shape = "cube") {
+  return error_of("<shape type='" + shape + "'><transform name='to_world'>" + steps + "</transform></shape>");
+}
+
+TEST(Transform, SingleSteps) {
+  EXPECT_RGB(moved("<translate x='1' z='3'/>", {0, 0, 0}), 1, 0, 3, 1e-6);
+  EXPECT_RGB(moved("<translate value='1, 2, 3'/>", {0, 0, 0}), 1, 2, 3, 1e-6);
+  EXPECT_RGB(moved("<scale x='2'/>", {1, 1, 1}), 2, 1, 1, 1e-6);
+  EXPECT_RGB(moved("<scale value='2'/>", {1, 1, 1}), 2, 2, 2, 1e-6);
+  EXPECT_RGB(moved("<scale value='2 3 4'/>", {1, 1, 1}), 2, 3, 4, 1e-6);
+  EXPECT_RGB(moved("<rotate z='1' angle='90'/>", {1, 0, 0}), 0, 1, 0, 1e-6);
+  EXPECT_RGB(moved("<rotate x='0' y='2' angle='90'/>", {1, 0, 0}), 0, 0, -1, 1e-6);
+  EXPECT_RGB(moved("<rotate value='0, 0, 1' angle='-90'/>", {1, 0, 0}), 0, -1, 0, 1e-6);
+  EXPECT_RGB(moved("<matrix value='1 0 0 5  0 1 0 6  0 0 1 7  0 0 0 1'/>", {1, 2, 3}), 6, 8, 10, 1e-6);
+  EXPECT_RGB(moved("<matrix value='0,1,0,1,0,0,0,0,1'/>", {1, 2, 3}), 2, 1, 3, 1e-6);
+  EXPECT_RGB(moved("<matrix value='1 1e-007 0 0 0 1 0 0 0 0 1 0 0 0 0 1 '/>", {1, 2, 3}), 1, 2, 3, 1e-6);
+}
+
+TEST(Transform, StepsFollowTheFile) {
+  EXPECT_RGB(moved("<translate x='1'/><scale value='2'/>", {0, 0, 0}), 2, 0, 0, 1e-6);
+  EXPECT_RGB(moved("<scale value='2'/><translate x='1'/>", {0, 0, 0}), 1, 0, 0, 1e-6);
+  EXPECT_RGB(moved("<scale value='2'/><rotate z='1' angle='90'/><translate y='1'/>", {1, 0, 0}), 0, 3, 0, 1e-6);
+}
+
+TEST(Transform, LookatLooksAlongZ) {
+  for (const char* tag : {"lookat", "lookAt"}) {
+    const std::string step = std::string("<") + tag + " origin='1, 2, 3' target='1 2 13' up='0, 1, 0'/>";
+    EXPECT_RGB(moved(step, {0, 0, 0}), 1, 2, 3, 1e-6);
+    EXPECT_RGB(moved(step, {0, 0, 1}), 1, 2, 4, 1e-6);
+    EXPECT_RGB(moved(step, {0, 1, 0}), 1, 3, 3, 1e-6);
+    EXPECT_RGB(moved(step, {1, 0, 0}), 2, 2, 3, 1e-6);
+  }
+  EXPECT_RGB(moved("<lookat origin='0,0,0' target='0,5,0'/>", {0, 0, 1}), 0, 1, 0, 1e-6);  // up is found
+}
+
+TEST(Transform, FlatShapesNeedNoDepth) {
+  const Scene s =
+      load_inside("<shape type='rectangle'><transform name='to_world'><scale x='2' y='3' z='0'/></transform></shape>");
+  EXPECT_FLOAT_EQ(s.meshes[0].positions[0].x * s.meshes[0].positions[0].x, 4);
+  EXPECT_EQ(error("<scale x='2' y='3' z='0'/>", "disk"), "");
+}
+
+TEST(Transform, WrongOnesAreErrors) {
+  EXPECT_SAYS(error("<scale value='0'/>"), "singular");
+  EXPECT_SAYS(error("<scale y='0'/>"), "singular");
+  EXPECT_SAYS(error("<scale y='0'/>", "rectangle"), "singular");
+  EXPECT_SAYS(error("<scale value='1e-45'/>"), "singular");
+  EXPECT_SAYS(error("<matrix value='1 2 3'/>"), "16 (or 9) numbers");
+  EXPECT_SAYS(error("<matrix/>"), "16 (or 9) numbers");
+  EXPECT_SAYS(error("<matrix value='1 0 0 0 0 1 0 0 0 0 1 0 1 0 0 1'/>"), "projective");
+  EXPECT_SAYS(error("<matrix value='1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 0'/>"), "singular");
+  EXPECT_SAYS(error("<translate x='nan'/>"), "\"nan\" is not a number");
+  EXPECT_SAYS(error("<translate x='1e99'/>"), "beyond the range");
+  EXPECT_SAYS(error("<scale value='1e30'/><scale value='1e30'/>"), "beyond the range");
+  EXPECT_SAYS(error("<rotate angle='5'/>"), "needs an axis");
+  EXPECT_SAYS(error("<lookat origin='0,0,0' target='0,0,0' up='0,1,0'/>"), "the same point");
+  EXPECT_SAYS(error("<lookat origin='0,0,0' target='0,2,0' up='0,1,0'/>"), "up points along");
+  EXPECT_SAYS(error("<lookat target='0,2,0' up='0,1,0'/>"), "needs origin");
+  EXPECT_SAYS(error("\n<turn x='1'/>"), "test.xml:3: <turn>: is unknown inside <transform>");
+  EXPECT_SAYS(error_of("<shape type='cube'><animation name='to_world'/></shape>"), "moving objects");
+  EXPECT_SAYS(error_of("<shape type='cube'><float name='to_world' value='1'/></shape>"), "should be a <transform>");
+}
+
+}  // namespace
+}  // namespace ajar
