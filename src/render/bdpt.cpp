@@ -30,28 +30,9 @@ void add(Work& work, const Candidate& c, int s, int t) {
   work.scratch.strategies->push_back({s, t, raster, c.value * filter, weighted * filter});
 }
 
-// Shadow rays are traced many at a time: they do not depend on each other, and the processor overlaps them.
-constexpr size_t most_pending = 64;
-
-void trace_pending(Work& work) {
-  std::vector<Pending>& pending = work.scratch.pending;
-  for (Pending& p : pending) p.lit = visible(*work.job.accel, p.candidate);
-  for (const Pending& p : pending)
-    if (p.lit) add(work, p.candidate, p.s, p.t);
-  work.scratch.counters.shadow_rays += pending.size();
-  pending.clear();
-}
-
-// Room for the next candidate; give_back when it came to nothing.
-Candidate& next_candidate(Work& work, int s, int t) {
-  std::vector<Pending>& pending = work.scratch.pending;
-  if (pending.size() == most_pending) trace_pending(work);
-  Pending& p = pending.emplace_back();
-  p.s = s, p.t = t;
-  return p.candidate;
-}
-void keep_if(Work& work, bool good) {
-  if (!good) work.scratch.pending.pop_back();
+void add_if_visible(Work& work, const Candidate& c, int s, int t) {
+  ++work.scratch.counters.shadow_rays;
+  if (visible(*work.job.accel, c)) add(work, c, s, t);
 }
 
 // The light subpath, and t = 1 at every vertex. The light itself, s = 1, is left to the camera ray that sees it.
@@ -70,8 +51,9 @@ void trace_light_subpath(Work& work) {
     if (!step(*job.scene, *job.accel, job.walk, light, walk, surface)) return;
     work.light_share = walk.first_share;
     if (!connectable(light[light.n - 1].guide)) continue;
-    Candidate& c = next_candidate(work, light.n, 1);
-    keep_if(work, join_camera(*job.scene, work.sample.lens, light, light.n, work.light_share, job.walk.light_paths, c));
+    Candidate c;
+    if (join_camera(*job.scene, work.sample.lens, light, light.n, work.light_share, job.walk.light_paths, c))
+      add_if_visible(work, c, light.n, 1);
   }
 }
 
@@ -86,17 +68,14 @@ void join_all(Work& work, const Surface& surface) {
     if (join_hit(*job.scene, camera, surface, c)) add(work, c, 0, t);
   }
   if (t > job.walk.max_edges || !connectable(camera[t - 1].guide)) return;
+  Candidate c;
   const double light_paths = job.walk.light_paths;
-  if (!job.scene->lights.empty()) {
-    Candidate& c = next_candidate(work, 1, t);
-    keep_if(work, join_light(*job.scene, work.sample.sampler, camera, t, light_paths, c));
-  }
+  if (!job.scene->lights.empty() && join_light(*job.scene, work.sample.sampler, camera, t, light_paths, c))
+    add_if_visible(work, c, 1, t);
   const int most = std::min(light.n, job.walk.max_edges + 1 - t);
-  for (int s = 2; s <= most; ++s) {
-    if (!connectable(light[s - 1].guide)) continue;
-    Candidate& c = next_candidate(work, s, t);
-    keep_if(work, join_vertices(light, s, work.light_share, camera, t, light_paths, c));
-  }
+  for (int s = 2; s <= most; ++s)
+    if (connectable(light[s - 1].guide) && join_vertices(light, s, work.light_share, camera, t, light_paths, c))
+      add_if_visible(work, c, s, t);
 }
 
 void join_escapes(Work& work, const Walk& walk) {
@@ -121,7 +100,6 @@ void trace_one(const Job& job, Sample& sample, Scratch& scratch) {
     }
     join_all(work, surface);
   } while (camera.n <= job.walk.max_edges && scatter(job.walk, sample.sampler, camera, walk));
-  trace_pending(work);
 }
 
 }  // namespace

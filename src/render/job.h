@@ -31,34 +31,9 @@ struct Sample {
   Rgb value{0};  ///< radiance found by the camera path, unfiltered
 };
 
-/// A camera path in flight, for trace_path.
-struct Flight {
-  uint32_t sample = 0;
-  bool found = false, alive = true;
-  bool alone = true;  ///< the last direction could not have come from next-event estimation
-  Vec3 o{0}, d{0};
-  float t_min = 0, t_max = infinity;
-  Hit hit;
-  Vec3 from{0};    ///< where the ray left a surface
-  double pdf = 1;  ///< of its direction, per solid angle
-  Rgb beta{1}, survival{1};
-  Rgb direct{0};  ///< next-event estimation before visibility; black: no shadow ray
-  Vec3 shadow_o{0}, shadow_d{0};
-  float shadow_t_max = 1;
-};
-
-/// A join that waits for its shadow ray, for trace_bdpt.
-struct Pending {
-  Candidate candidate;
-  int s = 0, t = 0;
-  bool lit = false;
-};
-
 /// Storage of one thread at work on one chunk; kept from chunk to chunk.
 struct Scratch {
   std::vector<Sample> samples;
-  std::vector<Flight> flights;
-  std::vector<Pending> pending;
   Subpath camera, light;
   Counters counters;
   uint64_t rejected = 0;

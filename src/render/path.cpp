@@ -30,26 +30,39 @@ Rgb hit_sky(const Scene& scene, Heuristic h, const Vec3& from, const Vec3& d, do
   return sum;
 }
 
-// Next-event estimation, s = 1: leaves the shadow ray and what it would bring with the flight.
-void sample_light(const Job& job, const Guide& guide, const Surface& at, Sampler& sampler, Flight& f) {
+// Next-event estimation: s = 1.
+Rgb direct(const Job& job, const Guide& guide, const Surface& at, Sampler& sampler, Counters& counters) {
   const Scene& scene = *job.scene;
   float pick;
   const uint32_t light = choose_light(scene, sampler, pick);
   const Vec2 u = sampler.next2();
   DirectSample d;
-  if (!sample_direct(scene, light, at.p, u, d)) return;
+  if (!sample_direct(scene, light, at.p, u, d)) return Rgb(0);
   const GuideEval e = evaluate(guide, d.wi, Mode::radiance);
-  if (is_black(e.f_cos)) return;
+  if (is_black(e.f_cos)) return Rgb(0);
+  const Vec3 o = offset(at.p, at.ng, at.error, d.wi);
+  ++counters.shadow_rays;
   const LightPoint& l = d.point;
+  if (l.infinite) {
+    if (job.accel->occluded(o, d.wi, infinity)) return Rgb(0);
+  } else {
+    const Vec3 end = l.delta_position ? l.p : shadow_end(l.p, l.n, l.error, -d.wi, d.distance);
+    if (job.accel->occluded(o, end - o, 1)) return Rgb(0);
+  }
   const bool alone = l.delta_position || l.delta_direction;
   const float w = alone ? 1 : hit_weight(job.walk.heuristic, double(pick) * d.pdf, e.pdf);
-  f.direct = f.beta * e.f_cos * d.radiance * (w / (pick * d.pdf));
-  f.shadow_o = offset(at.p, at.ng, at.error, d.wi);
-  f.shadow_d = d.wi, f.shadow_t_max = infinity;
-  if (l.infinite) return;
-  const Vec3 end = l.delta_position ? l.p : shadow_end(l.p, l.n, l.error, -d.wi, d.distance);
-  f.shadow_d = end - f.shadow_o, f.shadow_t_max = 1;
+  return e.f_cos * d.radiance * (w / (pick * d.pdf));
 }
+
+// The ray that a path sends next, with what its end needs to know about it.
+struct Flight {
+  Vec3 o{0}, d{0};
+  float t_min = 0, t_max = infinity;
+  Vec3 from{0};       // where it left a surface
+  double pdf = 1;     // of its direction, per solid angle
+  bool alone = true;  // next-event estimation could not have found its end
+  Rgb beta{1}, survival{1};
+};
 
 // Chooses where the path goes on; false where it ends.
 bool scatter(const Job& job, const Guide& guide, const Surface& at, int edges, Sampler& sampler, Flight& f) {
@@ -72,61 +85,31 @@ bool scatter(const Job& job, const Guide& guide, const Surface& at, int edges, S
   return true;
 }
 
-// What happens at the end of a ray; false where the path ends.
-bool arrive(const Job& job, int edges, Sample& sample, Flight& f) {
+Rgb trace_one(const Job& job, Sample& sample, Counters& counters) {
   const Scene& scene = *job.scene;
   const Heuristic h = job.walk.heuristic;
-  if (!f.found) {
-    if (!scene.infinite_lights.empty()) sample.value += f.beta * hit_sky(scene, h, f.from, f.d, f.pdf, f.alone);
-    return false;
-  }
-  const Surface at = make_surface(scene, f.hit, f.o, f.d);
-  if (scene.shapes[f.hit.shape].light != none)
-    sample.value += f.beta * hit_light(scene, h, at, f.from, f.d, f.pdf, f.alone);
-  if (edges >= job.walk.max_edges) return false;
+  const CameraRay ray = generate(scene.camera, sample.raster, sample.lens);
+  Flight f{ray.o, ray.d, ray.t_min, ray.t_max, ray.o};
+  Rgb value(0);
   Guide guide;
-  make_guide(scene, at, -f.d, guide);
-  if (connectable(guide) && !scene.lights.empty()) sample_light(job, guide, at, sample.sampler, f);
-  return scatter(job, guide, at, edges, sample.sampler, f);
-}
-
-void start(const Job& job, std::span<const Sample> samples, std::vector<Flight>& flights) {
-  flights.assign(samples.size(), {});
-  for (uint32_t i = 0; i < samples.size(); ++i) {
-    const CameraRay ray = generate(job.scene->camera, samples[i].raster, samples[i].lens);
-    Flight& f = flights[i];
-    f.sample = i;
-    f.o = f.from = ray.o, f.d = ray.d, f.t_min = ray.t_min, f.t_max = ray.t_max;
+  for (int edges = 1;; ++edges) {
+    Hit hit;
+    ++counters.camera_rays;
+    if (!job.accel->intersect(f.o, f.d, f.t_min, f.t_max, hit))
+      return scene.infinite_lights.empty() ? value : value + f.beta * hit_sky(scene, h, f.from, f.d, f.pdf, f.alone);
+    const Surface at = make_surface(scene, hit, f.o, f.d);
+    if (scene.shapes[hit.shape].light != none) value += f.beta * hit_light(scene, h, at, f.from, f.d, f.pdf, f.alone);
+    if (edges >= job.walk.max_edges) return value;
+    make_guide(scene, at, -f.d, guide);
+    if (connectable(guide) && !scene.lights.empty()) value += f.beta * direct(job, guide, at, sample.sampler, counters);
+    if (!scatter(job, guide, at, edges, sample.sampler, f)) return value;
   }
 }
-
-// Paths advance together, one edge at a time: rays of different paths do not depend on each other, so the processor
-// overlaps their waits for memory, which one path alone would have to sit out.
-void trace_together(const Job& job, std::span<Sample> samples, Scratch& scratch) {
-  std::vector<Flight>& flights = scratch.flights;
-  start(job, samples, flights);
-  for (int edges = 1; !flights.empty(); ++edges) {
-    scratch.counters.camera_rays += flights.size();
-    for (Flight& f : flights) f.found = job.accel->intersect(f.o, f.d, f.t_min, f.t_max, f.hit);
-    for (Flight& f : flights) f.alive = arrive(job, edges, samples[f.sample], f);
-    for (Flight& f : flights) {
-      if (is_black(f.direct)) continue;
-      ++scratch.counters.shadow_rays;
-      if (!job.accel->occluded(f.shadow_o, f.shadow_d, f.shadow_t_max)) samples[f.sample].value += f.direct;
-      f.direct = Rgb(0);
-    }
-    std::erase_if(flights, [](const Flight& f) { return !f.alive; });
-  }
-}
-
-// As many as keep the machine busy and fit its first-level cache.
-constexpr size_t together = 64;
 
 }  // namespace
 
 void trace_path(const Job& job, std::span<Sample> samples, Scratch& scratch) {
-  for (size_t i = 0; i < samples.size(); i += together)
-    trace_together(job, samples.subspan(i, std::min(together, samples.size() - i)), scratch);
+  for (Sample& sample : samples) sample.value = trace_one(job, sample, scratch.counters);
 }
 
 }  // namespace ajar

@@ -31,8 +31,7 @@ const Convex shapes[] = {
        return add_quad(s, c, size * Vec3(0.7f, 0.3f, 0.2f), size * Vec3(-0.2f, 0.3f, 0.6f), 0);
      }},
     {"sphere", [](Scene& s, const Vec3& c, float size) { return add_sphere(s, c, size, 0); }},
-    {"disk",
-     [](Scene& s, const Vec3& c, float size) { return add_quadric(s, ShapeKind::disk, turned(c, size), 0); }},
+    {"disk", [](Scene& s, const Vec3& c, float size) { return add_quadric(s, ShapeKind::disk, turned(c, size), 0); }},
     {"cylinder",
      [](Scene& s, const Vec3& c, float size) { return add_quadric(s, ShapeKind::cylinder, turned(c, size), 0); }},
 };

@@ -101,7 +101,7 @@ constexpr Reference references[] = {
     {"cornell_box_path", "cornell-box/scene.xml", "cornell-box-256x256-depth10.exr", 256, 256, 10, "path", 128, 0.01},
     {"veach_mis_bdpt", "veach-mis/scene.xml", "veach-mis-384x216-depth5.exr", 384, 216, 5, "bdpt", 48, 0.01},
     {"veach_mis_path", "veach-mis/scene.xml", "veach-mis-384x216-depth5.exr", 384, 216, 5, "path", 96, 0.01},
-    {"veach_ajar_bdpt", "veach-ajar/scene.xml", "veach-ajar-320x180-depth10.exr", 320, 180, 10, "bdpt", 96, 0.03},
+    {"veach_ajar_bdpt", "veach-ajar/scene.xml", "veach-ajar-320x180-depth10.exr", 320, 180, 10, "bdpt", 64, 0.03},
 };
 
 INSTANTIATE_TEST_SUITE_P(Mitsuba, AgainstReference, testing::ValuesIn(references),

@@ -13,12 +13,13 @@ constexpr size_t max_open = 48;  // a plugin in a plugin in a plugin ...
 }
 
 void fail(const Loader& loader, const Node& node, const std::string& text) {
-  throw Error(place(loader.document, node) + ": " + text);
+  throw Error(one_line(place(loader.document, node) + ": " + text));
 }
 
 void note(Loader& loader, const Node& node, const std::string& text) {
   const std::string what = fmt::format("<{} type=\"{}\"> {}", node.tag, node.type, text);
-  if (loader.said.insert(what).second) loader.scene.notes.push_back(place(loader.document, node) + ": " + text);
+  if (loader.said.insert(what).second)
+    loader.scene.notes.push_back(one_line(place(loader.document, node) + ": " + text));
 }
 
 void unsupported(Loader& loader, const Node& node, const std::string& text, const std::string& instead) {

@@ -36,6 +36,8 @@ Document read_document(const std::string& text, const std::string& folder, const
 std::string snake_case(const std::string& name);
 /// Whole file as bytes. Throws Error with the reason.
 std::string read_text(const std::string& path);
+/// A message without line breaks, whatever was quoted in it.
+std::string one_line(std::string text);
 /// The attribute's value, or nullptr.
 const std::string* attribute(const Node& node, const char* name);
 /// "scene.xml:41: <bsdf type="foo">", the beginning of every message about an element.

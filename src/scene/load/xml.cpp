@@ -54,8 +54,8 @@ uint32_t line_at(const Source& s, ptrdiff_t offset) {
 }
 
 [[noreturn]] void fail(const Reader& r, const Source& s, const pugi::xml_node& node, const std::string& text) {
-  throw Error(
-      fmt::format("{}:{}: <{}>: {}", r.document.files[s.file], line_at(s, node.offset_debug()), node.name(), text));
+  throw Error(one_line(
+      fmt::format("{}:{}: <{}>: {}", r.document.files[s.file], line_at(s, node.offset_debug()), node.name(), text)));
 }
 
 std::string known_parameters(const Reader& r) {
@@ -175,7 +175,8 @@ void read_include(Reader& r, const Source& s, const pugi::xml_node& xml, const N
   const std::string& name = need(r, s, xml, node, "filename");
   const std::string path = find_file(r.document, node, name);
   if (path.empty()) fail(r, s, xml, fmt::format("there is no file {}", name));
-  const std::string canonical = fs::weakly_canonical(path).string();
+  std::error_code ignored;
+  const std::string canonical = fs::weakly_canonical(path, ignored).string();
   if (std::find(r.including.begin(), r.including.end(), canonical) != r.including.end())
     fail(r, s, xml, fmt::format("{} includes itself", name));
   if (int(r.including.size()) > max_include_depth)
@@ -249,6 +250,12 @@ std::string read_text(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) throw Error(fmt::format("{}: cannot be opened for reading", path));
   return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+std::string one_line(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+  return text;
 }
 
 const std::string* attribute(const Node& node, const char* name) {

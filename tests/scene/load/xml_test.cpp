@@ -224,6 +224,11 @@ TEST(Xml, LinesAreCountedFromOne) {
               "test.xml:5: <bsdf type=\"foo\">: unknown bsdf; supported: diffuse, twosided");
 }
 
+TEST(Xml, MessagesAreOneLine) {
+  EXPECT_EQ(error_of("<bsdf type='fo&#10;o' id='a&#13;b'/>").find_first_of("\n\r"), std::string::npos);
+  EXPECT_EQ(error_of("<integrator type='$a&#10;b'/>").find_first_of("\n\r"), std::string::npos);
+}
+
 TEST(Xml, UnknownElementsAreErrorsOrNotes) {
   EXPECT_SAYS(error_of("<gadget/>"), "<gadget>: unknown element");
   EXPECT_TRUE(says(load_inside("<gadget/>", lenient()).notes, "<gadget>"));
