@@ -85,13 +85,16 @@ RenderOptions render_options(const Arguments& a, Scene& scene) {
     o.integrator = a.integrator;
   else if (is_known(scene.hints.integrator))
     o.integrator = scene.hints.integrator;
+  else if (!scene.hints.integrator.empty())
+    scene.notes.push_back(fmt::format("{}: integrator {} is not in this version; {} is used", a.scene,
+                                      scene.hints.integrator, o.integrator));
   o.spp = uint32_t(a.spp > 0 ? a.spp : scene.hints.spp > 0 ? scene.hints.spp : int(o.spp));
   if (!a.time.empty()) o.seconds = parse_duration("--time", a.time);
   if (!a.cpu_time.empty()) o.cpu_seconds = parse_duration("--cpu-time", a.cpu_time);
   o.seed = a.seed;
   o.threads = a.threads;
   o.max_depth = a.max_depth != std::numeric_limits<int>::min() ? a.max_depth : scene.hints.max_depth;
-  if (o.max_depth < -1)
+  if (o.max_depth < -1 || o.max_depth == 0)
     throw Error(fmt::format("--max-depth {}: -1 for unlimited, 1 or more edges otherwise", o.max_depth));
   o.roulette_depth = a.roulette_depth;
   o.heuristic = a.heuristic == "balance" ? Heuristic::balance : Heuristic::power;
@@ -201,11 +204,11 @@ void run_render(Arguments a) {
   check_writable(a.out);
   Scene scene = load_scene(a.scene, load_options(a));
   if (!a.size.empty()) set_size(scene.camera, a.size);
-  for (const std::string& n : scene.notes)
-    if (!a.quiet) fmt::print(stderr, "ajar: note: {}\n", n);
   Run run;
   run.scene_path = a.scene, run.out_path = a.out, run.defines = a.defines;
   run.options = render_options(a, scene);
+  for (const std::string& n : scene.notes)
+    if (!a.quiet) fmt::print(stderr, "ajar: note: {}\n", n);
   run.threads = a.threads > 0 ? a.threads : int(std::thread::hardware_concurrency());
   run.triangles = count_triangles(scene);
   const double wall1 = wall_seconds(), cpu1 = process_cpu_seconds();
@@ -222,7 +225,10 @@ void run_render(Arguments a) {
   double saved = state.stats.seconds;
   std::signal(SIGINT, ask_to_stop);
   std::signal(SIGTERM, ask_to_stop);
-  render(scene, accel, run.options, state, [&](const RenderState& s) {
+  RenderOptions options = run.options;  // the user's time begins after loading: building counts
+  if (options.seconds > 0) options.seconds = std::max(options.seconds - run.build_seconds, 1e-3);
+  if (options.cpu_seconds > 0) options.cpu_seconds = std::max(options.cpu_seconds - run.build_cpu, 1e-3);
+  render(scene, accel, options, state, [&](const RenderState& s) {
     show(progress, run.options, s);
     log.write(s, false);
     if (!a.checkpoint.empty() && s.stats.seconds - saved > 60) {

@@ -115,7 +115,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   Film& film = state.film;
   RenderStats& stats = state.stats;
   const Job job = make_job(scene, accel, options, film);
-  const double wall0 = wall_seconds() - stats.seconds, cpu0 = process_cpu_seconds() - stats.cpu_seconds;
+  double wall0 = wall_seconds() - stats.seconds, cpu0 = process_cpu_seconds() - stats.cpu_seconds;
   const bool timed = options.seconds > 0 || options.cpu_seconds > 0;
   tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
   tbb::enumerable_thread_specific<Scratch> scratches;
@@ -155,7 +155,11 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
       s.counters = {};
       s.rejected = 0;
     }
-    if (!monitor(state)) break;
+    // Who watches, measuring errors perhaps, does so on his own time.
+    stats.seconds = wall_seconds() - wall0, stats.cpu_seconds = process_cpu_seconds() - cpu0;
+    const bool go_on = !monitor || monitor(state);
+    wall0 = wall_seconds() - stats.seconds, cpu0 = process_cpu_seconds() - stats.cpu_seconds;
+    if (!go_on) break;
   }
   out_of_budget();
 }

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 
@@ -12,13 +13,18 @@ namespace ajar::kit {
 /// A file of the source tree, e.g. "scenes/box/box.xml".
 inline std::string source_path(const std::string& name) { return std::string(AJAR_SOURCE_DIR) + "/" + name; }
 
-/// A file of the folder AJAR_SHARED (a CMake variable; by default "shared" beside the source tree), which holds scenes/
-/// and references/ that are not part of the sources.
-inline std::string shared_path(const std::string& name) { return std::string(AJAR_SHARED_DIR) + "/" + name; }
+/// A file outside the sources, "scenes/..." or "references/...": in the folder that the environment variable
+/// AJAR_SHARED_SCENES names and its neighbour references, else in AJAR_SHARED (a CMake variable; by default the folder
+/// shared beside the source tree).
+inline std::string shared_path(const std::string& name) {
+  const char* scenes = std::getenv("AJAR_SHARED_SCENES");
+  const std::filesystem::path home = scenes ? std::filesystem::path(scenes) / ".." : AJAR_SHARED_DIR;
+  return (home / name).lexically_normal().string();
+}
 
 }  // namespace ajar::kit
 
 /// First line of a test that needs a file which may be missing: skips the test and says why.
 #define AJAR_NEEDS(path)                                                     \
   if (const std::string needed_ = (path); !std::filesystem::exists(needed_)) \
-  GTEST_SKIP() << "needs " << needed_ << ", which is not there; cmake -DAJAR_SHARED=FOLDER names its home"
+  GTEST_SKIP() << "needs " << needed_ << ", which is not there; AJAR_SHARED_SCENES names the folder of scenes"

@@ -23,7 +23,7 @@ struct RenderState {
   RenderStats stats;
 };
 
-/// Seen between batches of chunks, a few times a second at most for large images; return false to stop.
+/// Seen between batches of chunks, a few times a second at most for large images; return false to stop. May be empty.
 using Monitor = std::function<bool(const RenderState&)>;
 
 /// Throws Error for an unknown integrator.

@@ -211,14 +211,14 @@ void add(Resolver& r, uint32_t id, float weight) {
 // them.
 void choose(Bsdf& out) {
   const Vec3 tilted{0.6f, 0, 0.8f};
-  float sum = 1 - out.opacity;
+  float sum = 0;
   for (int i = 0; i < out.count; ++i) {
     const Rgb a = visit(out.lobes[i], [&](const auto& lobe) { return albedo(lobe, tilted); });
     sum += out.choice[i] = out.weights[i] * std::max(max_component(a), 1e-3f);
   }
-  if (!(sum > 0)) return;
-  for (int i = 0; i < out.count; ++i) out.choice[i] /= sum;
-  out.pass = (1 - out.opacity) / sum;
+  for (int i = 0; i < out.count; ++i) out.choice[i] *= out.opacity / sum;
+  // Not by the albedo of the rest, which may be another material behind: the passage is the same both ways.
+  out.pass = 1 - out.opacity;
   out.has_delta |= out.pass > 0;
 }
 
