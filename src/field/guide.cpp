@@ -11,7 +11,7 @@ bool sides_agree(const Guide& g, const Vec3& w, const Vec3& local) {
 // |cos(ng, wi)| / |cos(ns, wi)| times the stored half: Veach's correction of the adjoint bsdf for bent normals.
 float adjoint(const Guide& g, const Vec3& wi, const Vec3& local, Mode mode) {
   if (!g.bent || mode == Mode::radiance) return 1;
-  return g.adjoint * std::abs(glm::dot(g.ng, wi) / local.z);
+  return g.adjoint * std::abs(glm::dot(g.ng, wi) / local.z);  // (A1)
 }
 
 }  // namespace

@@ -119,7 +119,7 @@ bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int
     out.light = {1, a.own, k.factor * cosine, 1, 0, false, a.sum};
   } else {
     const GuideEval e = evaluate(a.guide, k.w, Mode::importance);
-    out.value = a.beta * e.f_cos * k.factor;
+    out.value = a.beta * e.f_cos * k.factor;  // (P3)
     out.light = end_at(light, s, k.factor * cosine, e.pdf_reverse);
   }
   if (is_black(out.value)) return false;

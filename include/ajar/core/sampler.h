@@ -47,10 +47,6 @@ inline uint32_t sobol_second_reversed(uint32_t i) {
 
 inline float to_unit(uint32_t bits) { return std::min(float(bits) * 0x1p-32f, one_minus_epsilon); }
 
-/// Pairs of dimensions that get Sobol points; later ones are deep bounces, whose integrand is so rough that independent numbers leave
-/// the same error for a third of the time (docs/results.md).
-inline constexpr uint32_t sobol_pairs = 12;
-
 /// Owen-scrambled Sobol points in independently shuffled pairs of dimensions (padding, Burley 2020), one sequence per path
 /// number and side; the index runs over passes. Or independent numbers, for comparison.
 struct Sampler {
@@ -61,7 +57,7 @@ struct Sampler {
 
   Vec2 next2() {
     const uint64_t stream = key + 0x9e3779b97f4a7c15ull * ++pair;
-    if (kind == SamplerKind::independent || pair > sobol_pairs) {
+    if (kind == SamplerKind::independent) {
       const uint64_t r = mix64(stream + 0xd1342543de82ef95ull * index);
       return {to_unit(uint32_t(r)), to_unit(uint32_t(r >> 32))};
     }
