@@ -32,7 +32,7 @@ struct Inputs {
     scene.shapes.resize(1);
     prepare_materials(scene);
     surface.shape = 0;
-    resolve(scene, surface, {0, 0, 1}, bsdf);
+    resolve(scene, surface, {0, 0, 1}, surface.frame, bsdf);
     Sampler sampler = make_sampler(SamplerKind::independent, 1, Side::camera, 0, 0);
     for (size_t i = 0; i < count; ++i) {
       wo.push_back(to_cosine_hemisphere(sampler.next2()));
@@ -66,7 +66,7 @@ void resolve_bsdf(benchmark::State& state, MaterialKind kind) {
   Inputs in(kind);
   size_t i = 0;
   for (auto _ : state) {
-    resolve(in.scene, in.surface, in.wo[i], in.bsdf);
+    resolve(in.scene, in.surface, in.wo[i], in.surface.frame, in.bsdf);
     benchmark::DoNotOptimize(in.bsdf);
     i = (i + 1) % count;
   }

@@ -16,14 +16,14 @@ float adjoint(const Guide& g, const Vec3& wi, const Vec3& local, Mode mode) {
 
 }  // namespace
 
-void make_guide(const Scene& scene, Surface surface, const Vec3& wo, Guide& out) {
-  resolve(scene, surface, wo, out.bsdf);
+void make_guide(const Scene& scene, const Surface& surface, const Vec3& wo, Guide& out) {
   out.frame = surface.frame;
-  const float agreement = glm::dot(surface.frame.n, surface.ng);
+  resolve(scene, surface, wo, out.frame, out.bsdf);
+  const float agreement = glm::dot(out.frame.n, surface.ng);
   out.ng = agreement < 0 ? -surface.ng : surface.ng;
   out.bent = std::abs(agreement) < 1 - 1e-6f;
   out.wo = wo;
-  out.wo_local = surface.frame.to_local(wo);
+  out.wo_local = out.frame.to_local(wo);
   out.mix = 0;
   out.blocked = false;
   if (!out.bent) return;

@@ -11,13 +11,6 @@ End end_at(const Subpath& subpath, int n, double other, double reverse) {
   return {n, v.own, other, before.own, reverse * v.back, before.delta, v.sum};
 }
 
-// The segment between two points, moved off both surfaces.
-void set_segment(Candidate& out, const Vec3& from, const Vec3& to) {
-  out.o = from;
-  out.d = to - from;
-  out.t_max = 1;
-}
-
 }  // namespace
 
 bool join_hit(const Scene& scene, const Subpath& camera, const Surface& surface, Candidate& out) {
@@ -76,13 +69,7 @@ bool join_light(const Scene& scene, Sampler& sampler, const Subpath& camera, int
   out.light = {1, own, e.pdf * cos_light / d2, 1, 0, false, hittable ? 1.0 : 0.0};
   out.camera = end_at(camera, t, to_here * cos_here / d2, e.pdf_reverse);
   out.shares = {ratio(nee, own), light_paths};
-  const Vec3 from = offset(c.p, c.ng, c.error, d.wi);
-  if (point.infinite) {
-    out.o = from, out.d = d.wi, out.t_max = infinity;
-  } else {
-    set_segment(out, from,
-                point.delta_position ? point.p : shadow_end(point.p, point.n, point.error, -d.wi, d.distance));
-  }
+  out.segment = segment_to(d, c.p, c.ng, c.error);
   return true;
 }
 
@@ -103,7 +90,8 @@ bool join_vertices(const Subpath& light, int s, double share, const Subpath& cam
   out.light = end_at(light, s, ec.pdf * std::abs(glm::dot(a.ng, w)) / d2, ea.pdf_reverse);
   out.camera = end_at(camera, t, ea.pdf * std::abs(glm::dot(c.ng, w)) / d2, ec.pdf_reverse);
   out.shares = {share, light_paths};
-  set_segment(out, offset(c.p, c.ng, c.error, -w), shadow_end(a.p, a.ng, a.error, w, distance));
+  const Vec3 from = offset(c.p, c.ng, c.error, -w);
+  out.segment = {from, shadow_end(a.p, a.ng, a.error, w, distance) - from};
   return true;
 }
 
@@ -126,15 +114,12 @@ bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int
   out.camera = {1, 1, 0, 1, 0, false, 0};
   out.shares = {share, light_paths};
   out.raster = k.raster;
-  set_segment(out, a.ng == Vec3(0) ? a.p : offset(a.p, a.ng, a.error, k.w), k.p);
+  const Vec3 from = a.ng == Vec3(0) ? a.p : offset(a.p, a.ng, a.error, k.w);
+  out.segment = {from, k.p - from};
   // Nearer than the near plane nothing is in the way, as for camera rays.
   const Camera& camera = scene.camera;
-  if (camera.near_clip > 0) out.t_max = 1 - camera.near_clip / (camera.to_camera * Vec4(a.p, 1)).z;
+  if (camera.near_clip > 0) out.segment.t_max = 1 - camera.near_clip / (camera.to_camera * Vec4(a.p, 1)).z;
   return true;
-}
-
-bool visible(const Accel& accel, const Candidate& candidate) {
-  return !accel.occluded(candidate.o, candidate.d, candidate.t_max);
 }
 
 }  // namespace ajar

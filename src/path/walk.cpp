@@ -107,17 +107,10 @@ bool step(const Scene& scene, const Accel& accel, const WalkOptions& options, Su
 bool scatter(const WalkOptions& options, Sampler& sampler, Subpath& subpath, Walk& walk) {
   Vertex& v = subpath[subpath.n - 1];
   const Mode mode = walk.side == Side::camera ? Mode::radiance : Mode::importance;
-  const Vec2 u_lobe = sampler.next2(), u = sampler.next2();
   GuideSample s;
-  if (!sample(v.guide, u_lobe.x, u, mode, s) || is_black(s.weight)) return false;
-  walk.survival *= s.weight * (mode == Mode::radiance ? sqr(s.eta) : 1.0f);
-  walk.beta = v.beta * s.weight;
-  if (subpath.n > options.roulette_from) {
-    const float keep = std::min(max_component(walk.survival), 0.95f);
-    if (!(u_lobe.y < keep)) return false;
-    walk.beta /= keep;
-    walk.survival /= keep;
-  }
+  walk.beta = v.beta;
+  if (!choose_direction(v.guide, mode, subpath.n > options.roulette_from, sampler, walk.beta, walk.survival, s))
+    return false;
   v.delta = s.delta;
   walk.o = offset(v.p, v.ng, v.error, s.wi);
   walk.d = s.wi;

@@ -32,7 +32,7 @@ void add(Work& work, const Candidate& c, int s, int t) {
 
 void add_if_visible(Work& work, const Candidate& c, int s, int t) {
   ++work.scratch.counters.shadow_rays;
-  if (visible(*work.job.accel, c)) add(work, c, s, t);
+  if (visible(*work.job.accel, c.segment)) add(work, c, s, t);
 }
 
 // The light subpath, and t = 1 at every vertex. The light itself, s = 1, is left to the camera ray that sees it.
@@ -40,7 +40,6 @@ void trace_light_subpath(Work& work) {
   const Job& job = work.job;
   Sampler sampler = make_sampler(job.sampler, job.seed, Side::light, work.sample.path, work.sample.pass);
   Subpath& light = work.scratch.light;
-  light.n = 0;
   Walk walk;
   if (!start_light(*job.scene, sampler, light, walk)) return;
   ++work.scratch.counters.light_paths;
@@ -85,7 +84,9 @@ void join_escapes(Work& work, const Walk& walk) {
     if (join_escape(*work.job.scene, light, camera, walk, c)) add(work, c, 0, camera.n + 1);
 }
 
-void trace_one(const Job& job, Sample& sample, Scratch& scratch) {
+}  // namespace
+
+void trace_bdpt(const Job& job, Sample& sample, Scratch& scratch) {
   Work work{job, sample, scratch};
   trace_light_subpath(work);
   Subpath& camera = scratch.camera;
@@ -100,12 +101,6 @@ void trace_one(const Job& job, Sample& sample, Scratch& scratch) {
     }
     join_all(work, surface);
   } while (camera.n <= job.walk.max_edges && scatter(job.walk, sample.sampler, camera, walk));
-}
-
-}  // namespace
-
-void trace_bdpt(const Job& job, std::span<Sample> samples, Scratch& scratch) {
-  for (Sample& sample : samples) trace_one(job, sample, scratch);
 }
 
 }  // namespace ajar

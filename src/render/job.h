@@ -2,8 +2,6 @@
 // Leaves: what one path's tracing reads (Job) and writes (Scratch), the same for every integrator.
 #pragma once
 
-#include <span>
-
 #include "ajar/film/pyramid.h"
 #include "ajar/join/connect.h"
 #include "ajar/render/options.h"
@@ -33,7 +31,6 @@ struct Sample {
 
 /// Storage of one thread at work on one chunk; kept from chunk to chunk.
 struct Scratch {
-  std::vector<Sample> samples;
   Subpath camera, light;
   Counters counters;
   uint64_t rejected = 0;
@@ -44,12 +41,12 @@ struct Scratch {
   static constexpr uint64_t no_path = ~0ull;
 };
 
-/// Traces samples, in whatever order suits the machine; what each finds depends on itself alone.
-using Trace = void (*)(const Job&, std::span<Sample>, Scratch&);
+/// Traces one sample; what it finds depends on the sample alone.
+using Trace = void (*)(const Job&, Sample&, Scratch&);
 
-void trace_path(const Job&, std::span<Sample>, Scratch&);
-void trace_bdpt(const Job&, std::span<Sample>, Scratch&);
-void trace_light(const Job&, std::span<Sample>, Scratch&);
+void trace_path(const Job&, Sample&, Scratch&);
+void trace_bdpt(const Job&, Sample&, Scratch&);
+void trace_light(const Job&, Sample&, Scratch&);
 
 /// Law 6: only finite, non-negative values may go on; others are counted.
 inline bool accept(const Rgb& value, const Sample& sample, Scratch& scratch) {

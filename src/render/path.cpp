@@ -40,15 +40,9 @@ Rgb direct(const Job& job, const Guide& guide, const Surface& at, Sampler& sampl
   if (!sample_direct(scene, light, at.p, u, d)) return Rgb(0);
   const GuideEval e = evaluate(guide, d.wi, Mode::radiance);
   if (is_black(e.f_cos)) return Rgb(0);
-  const Vec3 o = offset(at.p, at.ng, at.error, d.wi);
   ++counters.shadow_rays;
+  if (!visible(*job.accel, segment_to(d, at.p, at.ng, at.error))) return Rgb(0);
   const LightPoint& l = d.point;
-  if (l.infinite) {
-    if (job.accel->occluded(o, d.wi, infinity)) return Rgb(0);
-  } else {
-    const Vec3 end = l.delta_position ? l.p : shadow_end(l.p, l.n, l.error, -d.wi, d.distance);
-    if (job.accel->occluded(o, end - o, 1)) return Rgb(0);
-  }
   const bool alone = l.delta_position || l.delta_direction;
   const float w = alone ? 1 : hit_weight(job.walk.heuristic, double(pick) * d.pdf, e.pdf);
   return e.f_cos * d.radiance * (w / (pick * d.pdf));
@@ -66,17 +60,9 @@ struct Flight {
 
 // Chooses where the path goes on; false where it ends.
 bool scatter(const Job& job, const Guide& guide, const Surface& at, int edges, Sampler& sampler, Flight& f) {
-  const Vec2 u_lobe = sampler.next2(), u = sampler.next2();
   GuideSample s;
-  if (!sample(guide, u_lobe.x, u, Mode::radiance, s) || is_black(s.weight)) return false;
-  f.beta *= s.weight;
-  f.survival *= s.weight * sqr(s.eta);
-  if (edges >= job.walk.roulette_from) {
-    const float keep = std::min(max_component(f.survival), 0.95f);
-    if (!(u_lobe.y < keep)) return false;
-    f.beta /= keep;
-    f.survival /= keep;
-  }
+  if (!choose_direction(guide, Mode::radiance, edges >= job.walk.roulette_from, sampler, f.beta, f.survival, s))
+    return false;
   f.o = offset(at.p, at.ng, at.error, s.wi), f.d = s.wi;
   f.t_min = 0, f.t_max = infinity;
   f.from = at.p;
@@ -85,31 +71,29 @@ bool scatter(const Job& job, const Guide& guide, const Surface& at, int edges, S
   return true;
 }
 
-Rgb trace_one(const Job& job, Sample& sample, Counters& counters) {
+}  // namespace
+
+void trace_path(const Job& job, Sample& sample, Scratch& scratch) {
   const Scene& scene = *job.scene;
   const Heuristic h = job.walk.heuristic;
   const CameraRay ray = generate(scene.camera, sample.raster, sample.lens);
   Flight f{ray.o, ray.d, ray.t_min, ray.t_max, ray.o};
-  Rgb value(0);
+  Rgb& value = sample.value;
   Guide guide;
   for (int edges = 1;; ++edges) {
     Hit hit;
-    ++counters.camera_rays;
-    if (!job.accel->intersect(f.o, f.d, f.t_min, f.t_max, hit))
-      return scene.infinite_lights.empty() ? value : value + f.beta * hit_sky(scene, h, f.from, f.d, f.pdf, f.alone);
+    ++scratch.counters.camera_rays;
+    if (!job.accel->intersect(f.o, f.d, f.t_min, f.t_max, hit)) {
+      if (!scene.infinite_lights.empty()) value += f.beta * hit_sky(scene, h, f.from, f.d, f.pdf, f.alone);
+      return;
+    }
     const Surface at = make_surface(scene, hit, f.o, f.d);
     if (scene.shapes[hit.shape].light != none) value += f.beta * hit_light(scene, h, at, f.from, f.d, f.pdf, f.alone);
-    if (edges >= job.walk.max_edges) return value;
+    if (edges >= job.walk.max_edges) return;
     make_guide(scene, at, -f.d, guide);
-    if (connectable(guide) && !scene.lights.empty()) value += f.beta * direct(job, guide, at, sample.sampler, counters);
-    if (!scatter(job, guide, at, edges, sample.sampler, f)) return value;
+    if (connectable(guide) && !scene.lights.empty()) value += f.beta * direct(job, guide, at, sample.sampler, scratch.counters);
+    if (!scatter(job, guide, at, edges, sample.sampler, f)) return;
   }
-}
-
-}  // namespace
-
-void trace_path(const Job& job, std::span<Sample> samples, Scratch& scratch) {
-  for (Sample& sample : samples) sample.value = trace_one(job, sample, scratch.counters);
 }
 
 }  // namespace ajar

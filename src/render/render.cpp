@@ -49,19 +49,20 @@ Sample make_sample(const Job& job, const Film& film, int x, int y) {
   return s;
 }
 
-void trace_chunk(const Job& job, const Integrator& integrator, Film& film, uint32_t chunk, Scratch& scratch) {
+void trace_pixel(const Job& job, Trace trace, Film& film, int x, int y, Scratch& scratch) {
+  Sample sample = make_sample(job, film, x, y);
+  trace(job, sample, scratch);
+  if (!accept(sample.value, sample, scratch)) sample.value = Rgb(0);
+  ++scratch.counters.camera_paths;
+  scratch.counters.zero_paths += is_black(sample.value);
+  film.camera[sample.path] = sample.value * sample.filter;
+}
+
+void trace_chunk(const Job& job, Trace trace, Film& film, uint32_t chunk, Scratch& scratch) {
   const int x0 = int(chunk) % tiles_x(film) * tile, y0 = int(chunk) / tiles_x(film) * tile;
   scratch.rejected_at = Scratch::no_path;
-  scratch.samples.clear();
   for (int y = y0; y < std::min(y0 + tile, film.height); ++y)
-    for (int x = x0; x < std::min(x0 + tile, film.width); ++x) scratch.samples.push_back(make_sample(job, film, x, y));
-  integrator.trace(job, scratch.samples, scratch);
-  for (Sample& sample : scratch.samples) {
-    if (!accept(sample.value, sample, scratch)) sample.value = Rgb(0);
-    scratch.counters.zero_paths += is_black(sample.value);
-    film.camera[sample.path] = sample.value * sample.filter;
-  }
-  scratch.counters.camera_paths += scratch.samples.size();
+    for (int x = x0; x < std::min(x0 + tile, film.width); ++x) trace_pixel(job, trace, film, x, y, scratch);
 }
 
 Job make_job(const Scene& scene, const Accel& accel, const RenderOptions& options, const Film& film) {
@@ -111,19 +112,27 @@ RenderState start_render(const Scene& scene, const RenderOptions& options) {
 
 void render(const Scene& scene, const Accel& accel, const RenderOptions& options, RenderState& state,
             const Monitor& monitor) {
-  const Integrator& integrator = find_integrator(options.integrator);
+  const Trace trace = find_integrator(options.integrator).trace;
   Film& film = state.film;
   RenderStats& stats = state.stats;
   const Job job = make_job(scene, accel, options, film);
-  double wall0 = wall_seconds() - stats.seconds, cpu0 = process_cpu_seconds() - stats.cpu_seconds;
+  double wall0 = 0, cpu0 = 0;
+  const auto start_clocks = [&] {
+    wall0 = wall_seconds() - stats.seconds;
+    cpu0 = process_cpu_seconds() - stats.cpu_seconds;
+  };
+  const auto read_clocks = [&] {
+    stats.seconds = wall_seconds() - wall0;
+    stats.cpu_seconds = process_cpu_seconds() - cpu0;
+  };
+  start_clocks();
   const bool timed = options.seconds > 0 || options.cpu_seconds > 0;
   tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
   tbb::enumerable_thread_specific<Scratch> scratches;
   Batch batch;
   const uint32_t all = chunk_count(film);
   const auto out_of_budget = [&] {
-    stats.seconds = wall_seconds() - wall0;
-    stats.cpu_seconds = process_cpu_seconds() - cpu0;
+    read_clocks();
     if (!timed) return film.passes >= options.spp;
     return (options.seconds > 0 && stats.seconds >= options.seconds) ||
            (options.cpu_seconds > 0 && stats.cpu_seconds >= options.cpu_seconds);
@@ -140,7 +149,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
         batch.strategies[i].clear();
         scratch.splats = &batch.splats[i];
         scratch.strategies = job.techniques ? &batch.strategies[i] : nullptr;
-        trace_chunk(job, integrator, film, from + i, scratch);
+        trace_chunk(job, trace, film, from + i, scratch);
         batch.rejected_at[i] = scratch.rejected_at;
       });
       if (film.splats) merge(film, batch.splats);
@@ -156,12 +165,12 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
       s.rejected = 0;
     }
     // Who watches, measuring errors perhaps, does so on his own time.
-    stats.seconds = wall_seconds() - wall0, stats.cpu_seconds = process_cpu_seconds() - cpu0;
+    read_clocks();
     const bool go_on = !monitor || monitor(state);
-    wall0 = wall_seconds() - stats.seconds, cpu0 = process_cpu_seconds() - stats.cpu_seconds;
+    start_clocks();
     if (!go_on) break;
   }
-  out_of_budget();
+  read_clocks();
 }
 
 }  // namespace ajar

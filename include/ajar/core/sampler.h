@@ -18,12 +18,15 @@ inline uint64_t hash(uint64_t a, uint64_t b) { return mix64(a ^ mix64(b)); }
 enum class Side : uint8_t { camera, light };
 enum class SamplerKind : uint8_t { sobol, independent };
 
-inline uint32_t reverse_bits(uint32_t x) {
-  x = __builtin_bswap32(x);
-  x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
-  x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
-  return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
+/// Two numbers at once, in the halves of one word: bits reversed, each in its half.
+inline uint64_t reverse_both(uint64_t x) {
+  x = __builtin_bswap64(x);
+  x = x << 32 | x >> 32;
+  x = ((x & 0x0f0f0f0f0f0f0f0full) << 4) | ((x >> 4) & 0x0f0f0f0f0f0f0f0full);
+  x = ((x & 0x3333333333333333ull) << 2) | ((x >> 2) & 0x3333333333333333ull);
+  return ((x & 0x5555555555555555ull) << 1) | ((x >> 1) & 0x5555555555555555ull);
 }
+inline uint32_t reverse_bits(uint32_t x) { return uint32_t(reverse_both(x)); }
 
 /// Owen scrambling of a bit-reversed number by hashing (Laine and Karras 2011, constants of Burley 2020).
 inline uint32_t laine_karras(uint32_t x, uint32_t seed) {
@@ -47,32 +50,37 @@ inline uint32_t sobol_second_reversed(uint32_t i) {
 
 inline float to_unit(uint32_t bits) { return std::min(float(bits) * 0x1p-32f, one_minus_epsilon); }
 
-/// Owen-scrambled Sobol points in independently shuffled pairs of dimensions (padding, Burley 2020), one sequence per path
-/// number and side; the index runs over passes. Or independent numbers, for comparison.
+/// Owen-scrambled Sobol points in independently shuffled pairs of dimensions (padding, Burley 2020), one sequence per
+/// path number and side; the index runs over passes. Or independent numbers, for comparison.
 struct Sampler {
-  uint64_t key = 0;     ///< of (seed, side, path)
-  uint32_t index = 0;   ///< pass
-  uint32_t pair = 0;    ///< dimensions are handed out in pairs
+  uint64_t key = 0;    ///< of (seed, side, path)
+  uint32_t index = 0;  ///< pass, its bits reversed
+  uint32_t pair = 0;   ///< dimensions are handed out in pairs
   SamplerKind kind = SamplerKind::sobol;
 
-  Vec2 next2() {
-    const uint64_t stream = key + 0x9e3779b97f4a7c15ull * ++pair;
+  /// The next pair of dimensions; skip sets it aside instead, for at to compute where it turns out to be needed.
+  Vec2 next2() { return at(skip()); }
+  float next1() { return next2().x; }
+  uint32_t skip() { return ++pair; }
+  Vec2 at(uint32_t number) const {
+    const uint64_t stream = key + 0x9e3779b97f4a7c15ull * number;
     if (kind == SamplerKind::independent) {
-      const uint64_t r = mix64(stream + 0xd1342543de82ef95ull * index);
+      const uint64_t r = mix64(stream + 0xd1342543de82ef95ull * reverse_bits(index));
       return {to_unit(uint32_t(r)), to_unit(uint32_t(r >> 32))};
     }
     const uint64_t h = mix64(stream);
-    // Shuffle the index in nested uniform blocks, so that pairs are independent of each other yet each stays a (0,2)-sequence.
-    const uint32_t shuffled = reverse_bits(laine_karras(reverse_bits(index), uint32_t(h) ^ 0x5bd1e995u));
+    // Shuffle the index in nested uniform blocks, so that pairs are independent of each other yet each stays a
+    // (0,2)-sequence.
+    const uint32_t shuffled = reverse_bits(laine_karras(index, uint32_t(h) ^ 0x5bd1e995u));
     const uint32_t x = laine_karras(shuffled, uint32_t(h >> 32));
     const uint32_t y = laine_karras(sobol_second_reversed(shuffled), uint32_t(h));
-    return {to_unit(reverse_bits(x)), to_unit(reverse_bits(y))};
+    const uint64_t both = reverse_both(uint64_t(y) << 32 | x);
+    return {to_unit(uint32_t(both)), to_unit(uint32_t(both >> 32))};
   }
-  float next1() { return next2().x; }
 };
 
 inline Sampler make_sampler(SamplerKind kind, uint64_t seed, Side side, uint64_t path, uint32_t pass) {
-  return {hash(hash(seed, uint64_t(side) + 1), path), pass, 0, kind};
+  return {hash(hash(seed, uint64_t(side) + 1), path), reverse_bits(pass), 0, kind};
 }
 
 }  // namespace ajar

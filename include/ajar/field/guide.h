@@ -39,9 +39,11 @@ struct GuideSample {
 };
 
 /// Resolves the material at the surface for a viewer in direction wo.
-void make_guide(const Scene& scene, Surface surface, const Vec3& wo, Guide& out);
+void make_guide(const Scene& scene, const Surface& surface, const Vec3& wo, Guide& out);
 /// Whether a direction that is not a delta event can leave here.
 inline bool connectable(const Guide& guide) { return guide.bsdf.has_smooth && !guide.blocked; }
+/// Whether sample reads u_lobe.
+inline bool chooses(const Guide& guide) { return guide.bsdf.chooses; }
 GuideEval evaluate(const Guide& guide, const Vec3& wi, Mode mode);
 bool sample(const Guide& guide, float u_lobe, const Vec2& u, Mode mode, GuideSample& out);
 

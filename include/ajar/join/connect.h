@@ -14,8 +14,7 @@ namespace ajar {
 /// and light path), divided by all densities, without visibility and weight.
 struct Candidate {
   Rgb value{0};
-  Vec3 o{0}, d{0};  ///< the segment o + t d, t in (0, t_max)
-  float t_max = 1;
+  Segment segment;  ///< that must be free
   End light, camera;
   Shares shares;
   Vec2 raster{0};  ///< t = 1: where it lands
@@ -34,7 +33,6 @@ bool join_vertices(const Subpath& light, int s, double share, const Subpath& cam
 bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int s, double share, double light_paths,
                  Candidate& out);
 
-bool visible(const Accel& accel, const Candidate& candidate);
 inline double weight(Heuristic h, const Candidate& c) { return mis_weight(h, c.light, c.camera, c.shares); }
 
 }  // namespace ajar

@@ -49,6 +49,23 @@ inline uint32_t choose_light(const Scene& scene, Sampler& sampler, float& pick) 
   return light;
 }
 
+/// Samples the direction in which a path goes on, beta and survival times its weight; with roulette only some go on.
+/// False where the path ends. Both take one pair of numbers, but compute what they use alone.
+inline bool choose_direction(const Guide& guide, Mode mode, bool roulette, Sampler& sampler, Rgb& beta, Rgb& survival,
+                             GuideSample& out) {
+  const uint32_t lobe_and_roulette = sampler.skip();
+  const float u_lobe = chooses(guide) ? sampler.at(lobe_and_roulette).x : 0;
+  if (!sample(guide, u_lobe, sampler.next2(), mode, out) || is_black(out.weight)) return false;
+  beta *= out.weight;
+  survival *= out.weight * (mode == Mode::radiance ? sqr(out.eta) : 1.0f);
+  if (!roulette) return true;
+  const float keep = std::min(max_component(survival), 0.95f);
+  if (!(sampler.at(lobe_and_roulette).y < keep)) return false;
+  beta /= keep;
+  survival /= keep;
+  return true;
+}
+
 /// Starts at the camera: vertex 0 and the ray through a raster position. factor of the hit is set by step.
 void start_camera(const Scene& scene, const WalkOptions& options, const Vec2& raster, const Vec2& lens,
                   Subpath& subpath, Walk& walk);
@@ -65,6 +82,22 @@ bool scatter(const WalkOptions& options, Sampler& sampler, Subpath& subpath, Wal
 inline Vec3 shadow_end(const Vec3& p, const Vec3& ng, float error, const Vec3& d, float length) {
   return offset(p, ng, std::max(error, 0x1p-20f * length), d);
 }
+
+/// What must be free for two points to see each other: o + t d, t in (0, t_max), off the surfaces at both ends.
+struct Segment {
+  Vec3 o{0}, d{0};
+  float t_max = 1;
+};
+
+/// From a surface point to the light's point that next-event estimation found for it.
+inline Segment segment_to(const DirectSample& light, const Vec3& p, const Vec3& ng, float error) {
+  const LightPoint& l = light.point;
+  const Vec3 o = offset(p, ng, error, light.wi);
+  if (l.infinite) return {o, light.wi, infinity};
+  return {o, (l.delta_position ? l.p : shadow_end(l.p, l.n, l.error, -light.wi, light.distance)) - o};
+}
+
+inline bool visible(const Accel& accel, const Segment& s) { return !accel.occluded(s.o, s.d, s.t_max); }
 
 /// Density of next-event estimation from x over that of emission for the same point of a light, along unit wi (x to
 /// light).

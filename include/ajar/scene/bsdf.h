@@ -18,6 +18,8 @@ struct Bsdf {
   int count = 0;            ///< lobes in use; 0 absorbs what does not pass
   bool has_smooth = false;  ///< some lobe is not a delta: the vertex can be connected to
   bool has_delta = false;
+  bool chooses = false;  ///< sample reads u_lobe
+  bool opaque = true;    ///< f is 0 unless both directions are in front
   float opacity = 1;  ///< 1 - opacity of the light passes straight through as a delta; weights account for it already
   float pass = 0;     ///< probability of sampling that passage; choice adds up to the rest
   float weights[max_lobes];
@@ -42,10 +44,10 @@ struct BsdfSample {
 };
 
 /// Evaluates the material of the surface for a viewer in world direction wo (unit, away from the surface). Turns and
-/// bends surface.frame as twosided (by the side of ng that wo is on), bump and normal maps ask; local directions below
-/// are in that frame. surface.ng is not touched. A bent normal stays on the side of ng but not always on the viewer's:
+/// bends the frame, which is surface.frame or a copy of it, as twosided (by the side of ng that wo is on), bump and
+/// normal maps ask; local directions below are in that frame. A bent normal stays on the side of ng but not always on the viewer's:
 /// there an opaque bsdf is 0, from both sides alike, so that f stays the same function for camera and light paths.
-void resolve(const Scene& scene, Surface& surface, const Vec3& wo, Bsdf& out);
+void resolve(const Scene& scene, const Surface& surface, const Vec3& wo, Frame& frame, Bsdf& out);
 
 /// f and both densities; zero for directions that only a delta lobe connects. Local directions, unit, away from the
 /// surface.

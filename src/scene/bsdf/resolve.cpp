@@ -7,7 +7,8 @@ namespace {
 
 struct Resolver {
   const Scene& scene;
-  Surface& surface;
+  const Surface& surface;
+  Frame& frame;
   Bsdf& out;
   bool back;            // the viewer is behind ng
   bool turned = false;  // frame.n was turned to the viewer; until the end s and t stay, as in a mirror
@@ -33,14 +34,14 @@ void bend(Resolver& r, Vec3 n) {
   if (!(l2 > 0) || !std::isfinite(l2)) return;
   n *= 1 / std::sqrt(l2);
   if (glm::dot(n, r.surface.ng) * (r.turned ? -1.0f : 1.0f) < 0) n = -n;
-  r.surface.frame = make_frame(n, r.surface.frame.s);
-  if (r.turned) r.surface.frame.t = -r.surface.frame.t;
+  r.frame = make_frame(n, r.frame.s);
+  if (r.turned) r.frame.t = -r.frame.t;
 }
 
 // Displacement of the surface along its shading normal by the height h (Blinn 1978): tangents get h_u n and h_v n.
 void bend_by_height(Resolver& r, const Material& m) {
   const Vec2 slope = eval_gradient(r.scene, m.map, r.surface) * m.map_scale;
-  const Vec3 n = r.surface.frame.n, &dpdu = r.surface.dpdu, &dpdv = r.surface.dpdv;
+  const Vec3 n = r.frame.n, &dpdu = r.surface.dpdu, &dpdv = r.surface.dpdv;
   const Vec3 u = dpdu + n * (slope.x - glm::dot(n, dpdu)), v = dpdv + n * (slope.y - glm::dot(n, dpdv));
   const Vec3 bent = glm::cross(u, v);
   bend(r, glm::dot(bent, n) < 0 ? -bent : bent);
@@ -48,7 +49,7 @@ void bend_by_height(Resolver& r, const Material& m) {
 
 void bend_by_map(Resolver& r, const Material& m) {
   const Vec3 c = 2.0f * eval(r.scene, m.map, r.surface) - 1.0f;
-  bend(r, r.surface.frame.to_world(c));
+  bend(r, r.frame.to_world(c));
 }
 
 Facets facets(const Resolver& r, const Material& m) {
@@ -152,6 +153,12 @@ bool is_delta(LobeKind k) {
          k == LobeKind::plastic;
 }
 bool is_smooth(LobeKind k) { return !is_delta(k) || k == LobeKind::plastic; }
+// What else than one kind of event: their samples read u_lobe.
+bool is_mixed(LobeKind k) {
+  return k != LobeKind::diffuse && k != LobeKind::conductor && k != LobeKind::roughconductor;
+}
+// Value and densities, deltas aside, for directions on two sides.
+bool transmits(LobeKind k) { return k == LobeKind::roughdielectric || k == LobeKind::principled; }
 
 void add(Resolver& r, uint32_t id, float weight);
 
@@ -161,6 +168,8 @@ void add_leaf(Resolver& r, const Material& m, float weight) {
   const LobeKind kind = out.lobes[out.count].kind;
   out.has_delta |= is_delta(kind);
   out.has_smooth |= is_smooth(kind);
+  out.chooses |= is_mixed(kind);
+  out.opaque &= !transmits(kind);
   out.weights[out.count++] = weight;
 }
 
@@ -172,7 +181,7 @@ void add(Resolver& r, uint32_t id, float weight) {
     switch (m.kind) {
       case MaterialKind::twosided:
         if (r.back && m.nested[1] != none) id = m.nested[1];
-        if (r.back && !r.turned) r.surface.frame.n = -r.surface.frame.n, r.turned = true;
+        if (r.back && !r.turned) r.frame.n = -r.frame.n, r.turned = true;
         break;
       case MaterialKind::mask: {
         const float opacity = look_unit(r, m.weight);
@@ -217,6 +226,7 @@ void choose(Bsdf& out) {
     sum += out.choice[i] = out.weights[i] * std::max(max_component(a), 1e-3f);
   }
   for (int i = 0; i < out.count; ++i) out.choice[i] *= out.opacity / sum;
+  out.chooses = true;
   // Not by the albedo of the rest, which may be another material behind: the passage is the same both ways.
   out.pass = 1 - out.opacity;
   out.has_delta |= out.pass > 0;
@@ -224,14 +234,15 @@ void choose(Bsdf& out) {
 
 }  // namespace
 
-void resolve(const Scene& scene, Surface& surface, const Vec3& wo, Bsdf& out) {
+void resolve(const Scene& scene, const Surface& surface, const Vec3& wo, Frame& frame, Bsdf& out) {
   out.count = 0;
-  out.has_smooth = out.has_delta = false;
+  out.has_smooth = out.has_delta = out.chooses = false;
+  out.opaque = true;
   out.opacity = 1;
   out.pass = 0;
-  Resolver r{scene, surface, out, glm::dot(wo, surface.ng) < 0};
+  Resolver r{scene, surface, frame, out, glm::dot(wo, surface.ng) < 0};
   add(r, scene.shapes[surface.shape].material, 1);
-  if (r.turned) surface.frame.t = -surface.frame.t;
+  if (r.turned) frame.t = -frame.t;
   out.choice[0] = 1;
   out.opacity = std::max(out.opacity, 0.0f);
   if (out.count != 1 || out.opacity < 1) choose(out);

@@ -174,7 +174,7 @@ Resolved resolved(const std::vector<Material>& materials, const Vec3& wo) {
   r.surface.shape = 0;
   r.surface.dpdu = {1, 0, 0};
   r.surface.dpdv = {0, 1, 0};
-  resolve(r.scene, r.surface, wo, r.bsdf);
+  resolve(r.scene, r.surface, wo, r.surface.frame, r.bsdf);
   return r;
 }
 
