@@ -49,11 +49,9 @@ bool join_escape(const Scene& scene, uint32_t light, const Subpath& camera, cons
 bool join_light(const Scene& scene, Sampler& sampler, const Subpath& camera, int t, double light_paths,
                 Candidate& out) {
   float pick;
-  const uint32_t light = choose_light(scene, sampler, pick);
-  const Vec2 u = sampler.next2();
   const Vertex& c = camera[t - 1];
   DirectSample d;
-  if (!sample_direct(scene, light, c.p, u, d)) return false;
+  if (!choose_light_point(scene, c.guide, c.p, sampler, pick, d)) return false;
   const GuideEval e = evaluate(c.guide, d.wi, Mode::radiance);
   out.value = c.beta * e.f_cos * d.radiance / (pick * d.pdf);
   if (is_black(out.value)) return false;

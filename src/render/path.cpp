@@ -32,12 +32,9 @@ Rgb hit_sky(const Scene& scene, Heuristic h, const Vec3& from, const Vec3& d, do
 
 // Next-event estimation: s = 1.
 Rgb direct(const Job& job, const Guide& guide, const Surface& at, Sampler& sampler, Counters& counters) {
-  const Scene& scene = *job.scene;
   float pick;
-  const uint32_t light = choose_light(scene, sampler, pick);
-  const Vec2 u = sampler.next2();
   DirectSample d;
-  if (!sample_direct(scene, light, at.p, u, d)) return Rgb(0);
+  if (!choose_light_point(*job.scene, guide, at.p, sampler, pick, d)) return Rgb(0);
   const GuideEval e = evaluate(guide, d.wi, Mode::radiance);
   if (is_black(e.f_cos)) return Rgb(0);
   ++counters.shadow_rays;

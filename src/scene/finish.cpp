@@ -111,6 +111,10 @@ void set_packed(Mesh& mesh) {
     }
   });
   mesh.packed = std::move(packed);
+  mesh.faces.resize(mesh.triangles.size());
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, mesh.faces.size(), 16384), [&](const auto& r) {
+    for (size_t i = r.begin(); i != r.end(); ++i) mesh.faces[i] = pack_triangle(mesh, uint32_t(i));
+  });
 }
 
 void set_areas(Mesh& mesh) {
@@ -146,6 +150,7 @@ void finish(Scene& scene) {
   set_bounds(scene);
   for (Mesh& mesh : scene.meshes) set_packed(mesh);
   prepare_materials(scene);
+  for (Shape& shape : scene.shapes) shape.tangents = wants_tangents(scene, shape.material);
   scene.infinite_lights.clear();
   std::vector<float> weights;
   for (uint32_t i = 0; i < scene.lights.size(); ++i) {

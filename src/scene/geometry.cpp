@@ -43,9 +43,8 @@ PackedVertex vertex(const Mesh& mesh, uint32_t i) {
   return {mesh.positions[i], uv.x, mesh.normals.empty() ? Vec3(0) : mesh.normals[i], uv.y};
 }
 
-Triangle triangle_of(const Mesh& mesh, uint32_t prim) {
-  const glm::uvec3 t = mesh.triangles[prim];
-  return {vertex(mesh, t.x), vertex(mesh, t.y), vertex(mesh, t.z)};
+Triangle triangle_of(const Mesh& mesh, const glm::uvec3& v) {
+  return {vertex(mesh, v.x), vertex(mesh, v.y), vertex(mesh, v.z)};
 }
 
 float magnitude_of(const Triangle& t) { return std::max(max_abs(t.a.p), std::max(max_abs(t.b.p), max_abs(t.c.p))); }
@@ -73,13 +72,21 @@ void set_normal(const Triangle& t, Vec3& normal, float& error) {
     set_sliver_normal(t, normal, error);
 }
 
-// Position, error, ng and uv of a point of a triangle, in the mesh's space.
-void set_point(const Mesh& mesh, const Triangle& t, Surface& s) {
+PackedTriangle face_of(const Mesh& mesh, uint32_t prim) {
+  return mesh.faces.empty() ? pack_triangle(mesh, prim) : mesh.faces[prim];
+}
+
+// Position, error, ng and uv of a point of a triangle, in the mesh's space; returns the triangle.
+Triangle set_point(const Mesh& mesh, Surface& s) {
+  const PackedTriangle face = face_of(mesh, s.prim);
+  const Triangle t = triangle_of(mesh, face.v);
   const Vec2 b = s.bary;
   const float a = 1 - b.x - b.y;
   s.p = t.a.p * a + t.b.p * b.x + t.c.p * b.y;
-  set_normal(t, s.ng, s.error);
+  s.ng = face.ng;
+  s.error = face.error;
   s.uv = mesh.uvs.empty() ? b : Vec2(t.a.u, t.a.v) * a + Vec2(t.b.u, t.b.v) * b.x + Vec2(t.c.u, t.c.v) * b.y;
+  return t;
 }
 
 // Solves p = p0 + dpdu u + dpdv v on the triangle.
@@ -113,16 +120,16 @@ void move_to_world(const Instance& instance, Surface& s, Vec3& shading) {
 }
 
 void set_mesh_surface(const Scene& scene, Surface& s) {
-  const Mesh& mesh = scene.meshes[scene.shapes[s.shape].mesh];
-  const Triangle t = triangle_of(mesh, s.prim);
-  set_point(mesh, t, s);
-  set_tangents(mesh, t, s);
+  const Shape& shape = scene.shapes[s.shape];
+  const Mesh& mesh = scene.meshes[shape.mesh];
+  const Triangle t = set_point(mesh, s);
+  if (shape.tangents) set_tangents(mesh, t, s);
   const bool smooth = !mesh.normals.empty();
   Vec3 shading = smooth ? t.a.n * (1 - s.bary.x - s.bary.y) + t.b.n * s.bary.x + t.c.n * s.bary.y : s.ng;
   if (s.instance != none) move_to_world(scene.instances[s.instance], s, shading);
   Vec3 n = smooth ? unit(shading, s.ng) : s.ng;
   if (glm::dot(n, s.ng) < 0) n = -n;
-  s.frame = make_frame(n, s.dpdu);
+  s.frame = shape.tangents ? make_frame(n, s.dpdu) : make_frame(n);
 }
 
 // Nearest point of the unit object; its normal; derivatives of position to u and v (of which accel's hits are made).
@@ -222,9 +229,7 @@ float inverse(double area) { return area > 0 ? float(std::min(1 / area, 1e38)) :
 
 Surface make_surface(const Scene& scene, const Hit& hit, const Vec3& ray_o, const Vec3& ray_d) {
   Surface s;
-  s.shape = hit.shape;
-  s.prim = hit.prim;
-  s.instance = hit.instance;
+  s.shape = hit.shape, s.prim = hit.prim, s.instance = hit.instance;
   s.bary = hit.bary;
   if (scene.shapes[hit.shape].kind == ShapeKind::mesh)
     set_mesh_surface(scene, s);
@@ -244,7 +249,7 @@ Surface sample_area(const Scene& scene, uint32_t id, const Vec2& u, float& pdf) 
     Vec2 in_triangle = u;
     s.prim = mesh.area.sample(in_triangle.x);
     s.bary = to_triangle(in_triangle);
-    set_point(mesh, triangle_of(mesh, s.prim), s);
+    set_point(mesh, s);
   } else {
     const UnitPoint at = sample_unit(shape.kind, u, s.uv);
     s.p = map_point(shape.to_world, Vec3(at.p));
@@ -281,11 +286,10 @@ Vec2 sphere_uv(const Shape& sphere, const Vec3& p) {
   return {turn < 0 ? turn + 1 : turn, std::atan2(std::sqrt(q.x * q.x + q.y * q.y), q.z) * inv_pi};
 }
 
-float triangle_error(const Mesh& mesh, uint32_t triangle) {
-  Vec3 normal;
-  float error;
-  set_normal(triangle_of(mesh, triangle), normal, error);
-  return error;
+PackedTriangle pack_triangle(const Mesh& mesh, uint32_t triangle) {
+  PackedTriangle packed{mesh.triangles[triangle]};
+  set_normal(triangle_of(mesh, packed.v), packed.ng, packed.error);
+  return packed;
 }
 
 float position_error(const Shape& quadric, const Vec3& p) {

@@ -185,12 +185,25 @@ bool sample_direct(const Scene& scene, uint32_t id, const Vec3& x, const Vec2& u
   const Light& light = scene.lights[id];
   if (is_infinite(light.kind)) return sample_direct_infinite(scene, id, u, out);
   if (light.kind != LightKind::area) return sample_direct_delta(scene, id, x, out);
+  if (light.rectangle.area > 0) {
+    out.radiance = light.radiance.value;
+    out.point.light = id;
+    return !is_black(out.radiance) && sample_rectangle(light.rectangle, x, u, out);
+  }
   ShapeSample sample;
   if (!sample_shape(scene, light, x, u, sample)) return false;
   out.wi = sample.wi, out.distance = sample.distance, out.pdf = sample.pdf;
   out.radiance = radiance_at(scene, light, sample.at);
   out.point = point_of(sample.at, id);
   return !is_black(out.radiance);
+}
+
+bool may_light(const Scene& scene, uint32_t id, const Vec3& x, const Vec3& n) {
+  const Rectangle& r = scene.lights[id].rectangle;
+  if (!(r.area > 0)) return true;
+  const Vec3 to_corner = r.corner - x;
+  const float highest = glm::dot(n, to_corner) + std::max(glm::dot(n, r.x), 0.0f) + std::max(glm::dot(n, r.y), 0.0f);
+  return highest > 0 && glm::dot(r.normal, to_corner) < 0;
 }
 
 float pdf_direct(const Scene& scene, const LightPoint& point, const Vec3& x, const Vec3& wi) {
@@ -219,8 +232,7 @@ EmissionPdf pdf_emission(const Scene& scene, const LightPoint& point, const Vec3
   const Light& light = scene.lights[point.light];
   switch (light.kind) {
     case LightKind::area:
-      return {area_pdf(scene, light.shape, point.prim, point.uv),
-              std::max(glm::dot(point.n, direction), 0.0f) * inv_pi};
+      return {light_area_pdf(scene, light, point), std::max(glm::dot(point.n, direction), 0.0f) * inv_pi};
     case LightKind::directional:
       return {disk_pdf(scene), 1};
     case LightKind::point:

@@ -83,15 +83,8 @@ bool view_of(const Rectangle& r, const Vec3& from, View& v) {
   return v.solid > 1e-6;
 }
 
-// Places a point of the rectangle, a and b along its edges.
-void set_rectangle_point(const Light& light, float a, float b, Surface& at) {
-  at.ng = light.rectangle.normal;
-  at.error = light.rectangle.error;
-  at.shape = light.shape;
-  at.prim = a + b > 1 ? 1 : 0;
-}
-
-bool sample_view(const Light& light, const View& v, const Vec3& x, const Vec2& u, ShapeSample& out) {
+// Uniform in solid angle. Fills place, direction and density.
+bool sample_view(const View& v, const Vec3& x, const Vec2& u, DirectSample& out) {
   const double angle = u.x * v.solid + v.k, f = (std::cos(angle) * v.b0 - v.b1) / std::sin(angle);
   const double c = std::clamp(std::copysign(1 / std::sqrt(f * f + v.b0 * v.b0), f), -1.0, 1.0);
   const double px = std::clamp(c * v.z0 / std::sqrt(std::max(1 - c * c, 1e-300)), v.x0, v.x1);
@@ -101,12 +94,22 @@ bool sample_view(const Light& light, const View& v, const Vec3& x, const Vec2& u
   const double py = std::clamp(h * d / std::sqrt(std::max(1 - h * h, 1e-300)), v.y0, v.y1);
   const glm::dvec3 between = v.x * px + v.y * py + v.z * v.z0;
   const double distance = glm::length(between);
-  set_rectangle_point(light, float((px - v.x0) / (v.x1 - v.x0)), float((py - v.y0) / (v.y1 - v.y0)), out.at);
-  out.at.p = Vec3(glm::dvec3(x) + between);
+  out.point.p = Vec3(glm::dvec3(x) + between);
   out.wi = Vec3(between / distance);
   out.distance = float(distance);
   out.pdf = float(1 / v.solid);
-  return out.distance > 0 && -glm::dot(out.at.ng, out.wi) > 0;
+  return out.distance > 0;
+}
+
+// The same, uniform in area.
+bool sample_plane(const Rectangle& r, const Vec3& x, const Vec2& u, DirectSample& out) {
+  out.point.p = r.corner + r.x * u.x + r.y * u.y;
+  const Vec3 between = out.point.p - x;
+  const float d2 = length2(between);
+  out.distance = std::sqrt(d2);
+  out.wi = between / out.distance;
+  out.pdf = d2 / (r.area * -glm::dot(r.normal, out.wi));
+  return d2 > 0 && out.pdf < infinity;
 }
 
 bool sample_by_area(const Scene& scene, const Light& light, const Vec3& x, const Vec2& u, ShapeSample& out) {
@@ -124,13 +127,16 @@ bool sample_by_area(const Scene& scene, const Light& light, const Vec3& x, const
 
 }  // namespace
 
+bool sample_rectangle(const Rectangle& r, const Vec3& x, const Vec2& u, DirectSample& out) {
+  if (!(glm::dot(r.normal, x - r.corner) > 0)) return false;
+  View view;
+  if (!(view_of(r, x, view) ? sample_view(view, x, u, out) : sample_plane(r, x, u, out))) return false;
+  out.point.n = r.normal;
+  out.point.error = r.error;
+  return -glm::dot(r.normal, out.wi) > 0;
+}
+
 bool sample_shape(const Scene& scene, const Light& light, const Vec3& x, const Vec2& u, ShapeSample& out) {
-  const Rectangle& r = light.rectangle;
-  if (r.area > 0) {
-    if (!(glm::dot(r.normal, x - r.corner) > 0)) return false;
-    View view;
-    if (view_of(r, x, view)) return sample_view(light, view, x, u, out);
-  }
   const Shape& shape = scene.shapes[light.shape];
   Cone cone;
   if (shape.kind == ShapeKind::sphere && cone_of(shape, x, cone)) return sample_cone(shape, light, cone, u, out);
@@ -153,7 +159,9 @@ Surface sample_light_area(const Scene& scene, const Light& light, const Vec2& u,
   const Rectangle& r = light.rectangle;
   if (!(r.area > 0)) return sample_area(scene, light.shape, u, pdf);
   Surface at;
-  set_rectangle_point(light, u.x, u.y, at);
+  at.shape = light.shape;
+  at.ng = r.normal;
+  at.error = r.error;
   at.p = r.corner + r.x * u.x + r.y * u.y;
   pdf = 1 / r.area;
   return at;
@@ -179,7 +187,7 @@ Rectangle rectangle_of(const Mesh& mesh) {
       if (glm::distance(mesh.positions[t[j]], far) <= close &&
           glm::distance(mesh.positions[t[(j + 1) % 3]], b) <= close &&
           glm::distance(mesh.positions[t[(j + 2) % 3]], a) <= close)
-        return {corner, x, y, normal / area, area, std::max(triangle_error(mesh, 0), triangle_error(mesh, 1))};
+        return {corner, x, y, normal / area, area, std::max(pack_triangle(mesh, 0).error, pack_triangle(mesh, 1).error)};
   }
   return {};
 }

@@ -13,7 +13,9 @@ struct ShapeSample {
   float pdf = 0;  ///< per solid angle at x
 };
 
-/// A point of an area light whose emitting side faces x; false where this sample gives none.
+/// A point of a rectangle whose emitting side faces x: point (but for its light), wi, distance and pdf of out.
+bool sample_rectangle(const Rectangle& rectangle, const Vec3& x, const Vec2& u, DirectSample& out);
+/// A point of another area light whose emitting side faces x; false where this sample gives none.
 bool sample_shape(const Scene& scene, const Light& light, const Vec3& x, const Vec2& u, ShapeSample& out);
 /// Density per solid angle at x with which sample_shape finds this point, which lies along unit wi.
 float shape_pdf(const Scene& scene, const Light& light, const LightPoint& point, const Vec3& x, const Vec3& wi);

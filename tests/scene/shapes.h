@@ -28,9 +28,13 @@ inline Mesh rectangle(const Mat4& m) {
   return mesh;
 }
 
-/// Adds a shape with material 0; a mesh where one is given.
+/// Adds a shape with material 0, which is anisotropic: hits have tangents; a mesh where one is given.
 inline uint32_t add_shape(Scene& scene, ShapeKind kind, const Mat4& m, const Mesh* mesh = nullptr) {
-  if (scene.materials.empty()) scene.materials.emplace_back();
+  if (scene.materials.empty()) {
+    Material& material = scene.materials.emplace_back();
+    material.kind = MaterialKind::roughconductor;
+    material.alpha_v = Slot(0.2f);
+  }
   Shape shape;
   shape.kind = kind;
   shape.to_world = m;

@@ -49,6 +49,15 @@ inline uint32_t choose_light(const Scene& scene, Sampler& sampler, float& pick) 
   return light;
 }
 
+/// Next-event estimation's light and point of it, seen from p; pick is the probability of the light. False where it
+/// gives nothing. Always takes the same pairs of numbers.
+inline bool choose_light_point(const Scene& scene, const Guide& guide, const Vec3& p, Sampler& sampler, float& pick,
+                               DirectSample& out) {
+  const uint32_t light = choose_light(scene, sampler, pick), place = sampler.skip();
+  if (guide.bsdf.opaque && !may_light(scene, light, p, guide.frame.n)) return false;
+  return sample_direct(scene, light, p, sampler.at(place), out);
+}
+
 /// Samples the direction in which a path goes on, beta and survival times its weight; with roulette only some go on.
 /// False where the path ends. Both take one pair of numbers, but compute what they use alone.
 inline bool choose_direction(const Guide& guide, Mode mode, bool roulette, Sampler& sampler, Rgb& beta, Rgb& survival,

@@ -23,9 +23,9 @@ double area(const Scene& scene, uint32_t shape);
 float triangle_area(const Mesh& mesh, uint32_t triangle);
 /// (u, v) of a point of a sphere, as hits have them: u = azimuth / (2 pi) about the object's z, v = polar angle / pi.
 Vec2 sphere_uv(const Shape& sphere, const Vec3& p);
-/// Surface::error of a point of a triangle of a mesh (not instanced), and of one computed on a quadric by its
-/// transform.
-float triangle_error(const Mesh& mesh, uint32_t triangle);
+/// Vertices, normal and error of a triangle, computed afresh.
+PackedTriangle pack_triangle(const Mesh& mesh, uint32_t triangle);
+/// Surface::error of a point computed on a quadric by its transform.
 float position_error(const Shape& quadric, const Vec3& p);
 /// Ray origin off the surface, on the side of direction d.
 inline Vec3 offset(const Vec3& p, const Vec3& ng, float error, const Vec3& d) {

@@ -67,8 +67,10 @@ struct EmissionSample {
 };
 
 /// One light seen from x. u in [0,1)^2. False where this sample gives x nothing. Spheres seen from outside are sampled
-/// by the cone that they fill, other shapes by area.
+/// by the cone that they fill, near rectangles by solid angle, other shapes by area.
 bool sample_direct(const Scene& scene, uint32_t light, const Vec3& x, const Vec2& u, DirectSample& out);
+/// False where no point of the light can shine on the side of x that n points to; quick, and true in doubt.
+bool may_light(const Scene& scene, uint32_t light, const Vec3& x, const Vec3& n);
 /// Solid-angle density with which sample_direct at x would have found this point of this light along unit wi; 0 for
 /// deltas.
 float pdf_direct(const Scene& scene, const LightPoint& point, const Vec3& x, const Vec3& wi);

@@ -62,6 +62,8 @@ struct Material {
 std::string material_problem(const Scene& scene, uint32_t material);
 /// Lobes of the material after flattening; bsdf.h's max_lobes is the limit.
 int lobe_count(const Scene& scene, uint32_t material);
+/// Whether the material looks different when the tangents turn about the normal: anisotropic, bumped.
+bool wants_tangents(const Scene& scene, uint32_t material);
 /// Computes what is derived in all materials; finish() calls it. Throws Error where material_problem finds one.
 void prepare_materials(Scene& scene);
 

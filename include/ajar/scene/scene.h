@@ -22,6 +22,13 @@ struct alignas(32) PackedVertex {
   float v = 0;
 };
 
+/// A triangle as make_surface reads it.
+struct alignas(32) PackedTriangle {
+  glm::uvec3 v{0};
+  float error = 0;      ///< Surface::error of its points
+  Vec3 ng{0, 0, 1};     ///< unit, by the winding
+};
+
 /// Triangles in world space (in the group's space for shapes of a shapegroup). normals, uvs and colors may be
 /// empty.
 struct Mesh {
@@ -31,6 +38,7 @@ struct Mesh {
   std::vector<glm::uvec3> triangles;
   std::vector<Rgb> colors;           ///< per vertex, for mesh_attribute textures
   std::vector<PackedVertex> packed;  ///< positions, normals and uvs side by side; made by finish
+  std::vector<PackedTriangle> faces;  ///< made by finish
   Distribution area;                 ///< over triangles; filled by finish for meshes that emit
   double total_area = 0;
 };
@@ -42,6 +50,7 @@ enum class ShapeKind : uint8_t { mesh, sphere, disk, cylinder };
 struct Shape {
   ShapeKind kind = ShapeKind::mesh;
   bool flip = false;  ///< turns ng (meshes were turned by the loader)
+  bool tangents = true;  ///< hits get dpdu, dpdv and a frame turned to them; finish clears it where no bsdf asks
   uint32_t mesh = none;
   uint32_t material = 0;
   uint32_t light = none;

@@ -26,7 +26,7 @@ struct Surface {
   Frame frame;
   Vec2 uv{0};
   Vec2 bary{0};
-  Vec3 dpdu{0};  ///< not normalised; zero where the mesh has no useful texture coordinates
+  Vec3 dpdu{0};  ///< not normalised; zero where the mesh has no useful texture coordinates, or Shape::tangents is off
   Vec3 dpdv{0};
   uint32_t shape = none;
   uint32_t prim = 0;
