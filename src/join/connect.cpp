@@ -76,6 +76,7 @@ bool join_vertices(const Subpath& light, int s, double share, const Subpath& cam
   const Vertex& a = light[s - 1];
   const Vertex& c = camera[t - 1];
   const Vec3 between = c.p - a.p;
+  if (!may_scatter(c.guide, -between) || !may_scatter(a.guide, between)) return false;
   const float d2 = length2(between);
   if (!(d2 > 0)) return false;
   const float distance = std::sqrt(d2);

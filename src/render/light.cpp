@@ -3,6 +3,7 @@
 #include "job.h"
 
 namespace ajar {
+
 void trace_light(const Job& job, Sample& sample, Scratch& scratch) {
   const Scene& scene = *job.scene;
   Sampler sampler = make_sampler(job.sampler, job.seed, Side::light, sample.path, sample.pass);
@@ -16,7 +17,8 @@ void trace_light(const Job& job, Sample& sample, Scratch& scratch) {
     const bool joins = light.n == 1 || connectable(light[light.n - 1].guide);
     if (joins && join_camera(scene, sample.lens, light, light.n, 1, job.walk.light_paths, c)) {
       ++scratch.counters.shadow_rays;
-      if (visible(*job.accel, c.segment) && accept(c.value, sample, scratch)) scratch.splats->push_back({c.raster, c.value});
+      if (visible(*job.accel, c.segment) && accept(c.value, sample, scratch))
+        scratch.splats->push_back({c.raster, c.value});
     }
     if (light.n >= job.walk.max_edges) return;
     if (light.n > 1 && !scatter(job.walk, sampler, light, walk)) return;

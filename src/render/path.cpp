@@ -88,7 +88,8 @@ void trace_path(const Job& job, Sample& sample, Scratch& scratch) {
     if (scene.shapes[hit.shape].light != none) value += f.beta * hit_light(scene, h, at, f.from, f.d, f.pdf, f.alone);
     if (edges >= job.walk.max_edges) return;
     make_guide(scene, at, -f.d, guide);
-    if (connectable(guide) && !scene.lights.empty()) value += f.beta * direct(job, guide, at, sample.sampler, scratch.counters);
+    if (connectable(guide) && !scene.lights.empty())
+      value += f.beta * direct(job, guide, at, sample.sampler, scratch.counters);
     if (!scatter(job, guide, at, edges, sample.sampler, f)) return;
   }
 }

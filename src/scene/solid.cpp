@@ -187,7 +187,8 @@ Rectangle rectangle_of(const Mesh& mesh) {
       if (glm::distance(mesh.positions[t[j]], far) <= close &&
           glm::distance(mesh.positions[t[(j + 1) % 3]], b) <= close &&
           glm::distance(mesh.positions[t[(j + 2) % 3]], a) <= close)
-        return {corner, x, y, normal / area, area, std::max(pack_triangle(mesh, 0).error, pack_triangle(mesh, 1).error)};
+        return {corner,        x,    y,
+                normal / area, area, std::max(pack_triangle(mesh, 0).error, pack_triangle(mesh, 1).error)};
   }
   return {};
 }

@@ -42,6 +42,10 @@ struct GuideSample {
 void make_guide(const Scene& scene, const Surface& surface, const Vec3& wo, Guide& out);
 /// Whether a direction that is not a delta event can leave here.
 inline bool connectable(const Guide& guide) { return guide.bsdf.has_smooth && !guide.blocked; }
+/// False where evaluate towards w, of any length, is sure to be black; quick.
+inline bool may_scatter(const Guide& guide, const Vec3& w) {
+  return !guide.bsdf.opaque || glm::dot(guide.frame.n, w) > 0;
+}
 /// Whether sample reads u_lobe.
 inline bool chooses(const Guide& guide) { return guide.bsdf.chooses; }
 GuideEval evaluate(const Guide& guide, const Vec3& wi, Mode mode);

@@ -39,7 +39,8 @@ struct Walk {
   Rgb survival{1};          ///< throughput since the start, for roulette
 };
 
-/// One of the scene's lights (there is at least one), and the probability of its choice. A single light costs no number.
+/// One of the scene's lights (there is at least one), and the probability of its choice. A single light costs no
+/// number.
 inline uint32_t choose_light(const Scene& scene, Sampler& sampler, float& pick) {
   pick = 1;
   if (scene.lights.size() == 1) return 0;
@@ -86,8 +87,8 @@ bool step(const Scene& scene, const Accel& accel, const WalkOptions& options, Su
 /// Samples the direction in which the subpath goes on from its last vertex; false when it ends there.
 bool scatter(const WalkOptions& options, Sampler& sampler, Subpath& subpath, Walk& walk);
 
-/// Where a shadow ray of this length and unit direction d (away from the surface) ends, off the surface that it goes to:
-/// the ray tracer's rounding of the distance grows with the length.
+/// Where a shadow ray of this length and unit direction d (away from the surface) ends, off the surface that it goes
+/// to: the ray tracer's rounding of the distance grows with the length.
 inline Vec3 shadow_end(const Vec3& p, const Vec3& ng, float error, const Vec3& d, float length) {
   return offset(p, ng, std::max(error, 0x1p-20f * length), d);
 }

@@ -25,8 +25,8 @@ struct alignas(32) PackedVertex {
 /// A triangle as make_surface reads it.
 struct alignas(32) PackedTriangle {
   glm::uvec3 v{0};
-  float error = 0;      ///< Surface::error of its points
-  Vec3 ng{0, 0, 1};     ///< unit, by the winding
+  float error = 0;   ///< Surface::error of its points
+  Vec3 ng{0, 0, 1};  ///< unit, by the winding
 };
 
 /// Triangles in world space (in the group's space for shapes of a shapegroup). normals, uvs and colors may be
@@ -36,10 +36,10 @@ struct Mesh {
   std::vector<Vec3> normals;  ///< unit; empty: face normals
   std::vector<Vec2> uvs;
   std::vector<glm::uvec3> triangles;
-  std::vector<Rgb> colors;           ///< per vertex, for mesh_attribute textures
-  std::vector<PackedVertex> packed;  ///< positions, normals and uvs side by side; made by finish
+  std::vector<Rgb> colors;            ///< per vertex, for mesh_attribute textures
+  std::vector<PackedVertex> packed;   ///< positions, normals and uvs side by side; made by finish
   std::vector<PackedTriangle> faces;  ///< made by finish
-  Distribution area;                 ///< over triangles; filled by finish for meshes that emit
+  Distribution area;                  ///< over triangles; filled by finish for meshes that emit
   double total_area = 0;
 };
 
@@ -49,7 +49,7 @@ enum class ShapeKind : uint8_t { mesh, sphere, disk, cylinder };
 /// cylinder of radius 1 about z from 0 to 1, open, normal outwards. sphere: to_world is a similarity.
 struct Shape {
   ShapeKind kind = ShapeKind::mesh;
-  bool flip = false;  ///< turns ng (meshes were turned by the loader)
+  bool flip = false;     ///< turns ng (meshes were turned by the loader)
   bool tangents = true;  ///< hits get dpdu, dpdv and a frame turned to them; finish clears it where no bsdf asks
   uint32_t mesh = none;
   uint32_t material = 0;

@@ -14,7 +14,7 @@ struct Hit {
   uint32_t shape = none;     ///< index into Scene::shapes
   uint32_t prim = 0;         ///< triangle of a mesh; 0 for quadrics
   uint32_t instance = none;  ///< index into Scene::instances
-  Vec2 bary{0};  ///< mesh: weights of the triangle's 2nd and 3rd vertex; quadrics: their (u, v)
+  Vec2 bary{0};              ///< mesh: weights of the triangle's 2nd and 3rd vertex; quadrics: their (u, v)
 };
 
 /// A point on a surface, world space. Directions are unit length; ng is the shape's own outward side, never turned to
