@@ -1,5 +1,6 @@
 // How much of a render is ray tracing: renders passes on one thread, records every ray on the way to Embree, then sends the same rays
-// through a bare loop of rtcIntersect1 / rtcOccluded1. Prints rays/s of both and their ratio, in turn, several times.
+// through a bare loop of rtcIntersect1 / rtcOccluded1. Prints rays/s of both and their ratio, in turn, several times; beside it the
+// ratio that a renderer would reach which does nothing but find each hit's surface and draw one pair of numbers for each ray.
 //
 //   bench_rays SCENE.xml INTEGRATOR [WIDTH HEIGHT [PASSES [ROUNDS [MAX_DEPTH]]]]
 
@@ -9,7 +10,9 @@
 #include <cstdlib>
 
 #include "ajar/core/error.h"
+#include "ajar/core/sampler.h"
 #include "ajar/render/render.h"
+#include "ajar/scene/geometry.h"
 #include "ajar/scene/load.h"
 
 namespace {
@@ -71,6 +74,22 @@ double bare_loop(uint64_t& hits) {
   return process_cpu_seconds() - start;
 }
 
+double least_loop(const Scene& scene, const Accel& accel, float& sum) {
+  const double start = process_cpu_seconds();
+  Sampler sampler = make_sampler(SamplerKind::sobol, 1, Side::camera, 0, 1);
+  for (const Recorded& r : rays) {
+    const RTCRay& ray = r.ray;
+    const Vec3 o(ray.org_x, ray.org_y, ray.org_z), d(ray.dir_x, ray.dir_y, ray.dir_z);
+    Hit hit;
+    if (r.any_hit)
+      sum += float(accel.occluded(o, d, ray.tfar));
+    else if (accel.intersect(o, d, ray.tnear, ray.tfar, hit))
+      sum += make_surface(scene, hit, o, d).frame.n.x;
+    sum += sampler.next2().x;
+  }
+  return process_cpu_seconds() - start;
+}
+
 int argument(int argc, char** argv, int i, int otherwise) { return argc > i ? std::atoi(argv[i]) : otherwise; }
 
 }  // namespace
@@ -94,12 +113,14 @@ int main(int argc, char** argv) try {
   fmt::print("{} {} {}x{}, {} passes: {:.2f} rays per sample\n", argv[1], argv[2], width, height, options.spp, double(rays.size()) / samples);
   for (int round = 0; round < argument(argc, argv, 6, 5); ++round) {
     uint64_t hits = 0;
+    float sum = 0;
     double bare = 0, whole = 0;  // each round in the other order
     if (round % 2 == 0) bare = bare_loop(hits);
     whole = render_once(scene, accel, options);
     if (round % 2 == 1) bare = bare_loop(hits);
-    fmt::print("bare {:.3f} Mrays/s  render {:.3f} Mrays/s  ratio {:.3f}  {:.3f} us CPU per sample  ({} hits)\n", rays.size() / bare * 1e-6,
-               rays.size() / whole * 1e-6, bare / whole, whole / samples * 1e6, hits);
+    const double least = least_loop(scene, accel, sum);
+    fmt::print("bare {:.3f} Mrays/s  render {:.3f} Mrays/s  ratio {:.3f}  at most {:.3f}  {:.3f} us CPU per sample  ({} hits, {:.0f})\n",
+               rays.size() / bare * 1e-6, rays.size() / whole * 1e-6, bare / whole, bare / least, whole / samples * 1e6, hits, sum);
   }
   return 0;
 } catch (const ajar::Error& e) {
