@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ajar/core/warp.h"
 #include "shapes.h"
 
 namespace ajar {
@@ -287,6 +288,46 @@ TEST(Geometry, ShapesWithoutAreaAreNotSampled) {
   EXPECT_EQ(pdf, 0);
   EXPECT_EQ(area(scene, id), 0);
   EXPECT_EQ(power(scene, 0), 0);
+}
+
+// may_light is quick and must never deny light that sample_direct finds; many normals see none of the lamp.
+TEST(Geometry, NoLightIsDeniedThatShines) {
+  Scene scene;
+  const uint32_t lamp = kit::add_mesh(scene, kit::rectangle(placed(1.1f, {0.7f, 1.3f, 1}, {0.5f, 2, -1})));
+  const uint32_t light = kit::light_up(scene, lamp, Rgb(1));
+  finish(scene);
+  ASSERT_GT(scene.lights[light].rectangle.area, 0);
+  int denied = 0;
+  constexpr int n = 20000;
+  for (uint64_t i = 0; i < n; ++i) {
+    const Vec3 x(4.0f * random2(i, 1) - 2.0f, 4 * random2(i, 2).x - 2), normal = to_sphere(random2(i, 3));
+    const bool may = may_light(scene, light, x, normal);
+    denied += !may;
+    DirectSample d;
+    const bool shines = sample_direct(scene, light, x, random2(i, 4), d) && glm::dot(normal, d.wi) > 0;
+    EXPECT_TRUE(may || !shines) << i;
+  }
+  EXPECT_GT(denied, n / 3);
+}
+
+TEST(Geometry, TangentsWhereABsdfAsks) {
+  Material plain, bump, coat, brushed;
+  coat.kind = MaterialKind::twosided, coat.nested[0] = 0;
+  bump.kind = MaterialKind::bumpmap, bump.nested[0] = 1;
+  brushed.kind = MaterialKind::roughconductor, brushed.alpha_v = Slot(0.3f);
+  Scene scene;
+  scene.materials = {plain, coat, bump, brushed};
+  const bool expected[] = {false, false, true, true};
+  for (uint32_t i = 0; i < 4; ++i) scene.shapes[kit::add_mesh(scene, kit::rectangle(Mat4(1)))].material = i;
+  finish(scene);
+  for (uint32_t i = 0; i < 4; ++i) {
+    Hit hit;
+    hit.shape = i;
+    hit.bary = {0.25f, 0.5f};
+    const Surface s = make_surface(scene, hit, {0, 0, 5}, {0, 0, -1});
+    EXPECT_EQ(s.dpdu != Vec3(0), expected[i]) << i;
+    expect_sound(s);
+  }
 }
 
 }  // namespace
