@@ -10,11 +10,14 @@ namespace {
 
 double spp_done(const Film& film) { return film.passes + double(film.chunks) / chunk_count(film); }
 
-double share_done(const RenderOptions& o, const RenderState& state) {
+// By the limit that comes first. The error falls as 1 / spp, so a target's share is what is wanted over what is there.
+double share_done(const RenderOptions& o, const RenderState& state, double error) {
   double share = 0;
   if (o.seconds > 0) share = std::max(share, state.stats.seconds / o.seconds);
   if (o.cpu_seconds > 0) share = std::max(share, state.stats.cpu_seconds / o.cpu_seconds);
-  if (o.seconds <= 0 && o.cpu_seconds <= 0) share = spp_done(state.film) / std::max(1u, o.spp);
+  if (o.noise > 0) share = std::max(share, o.noise / error);
+  const bool counted = o.noise > 0 ? o.spp > 0 : o.seconds <= 0 && o.cpu_seconds <= 0;
+  if (counted) share = std::max(share, spp_done(state.film) / std::max(1u, o.spp));
   return std::clamp(share, 0.0, 1.0);
 }
 
@@ -25,7 +28,7 @@ std::string clock_text(double s) {
 }
 
 void print(const Progress& progress, const RenderOptions& options, const RenderState& state, bool last) {
-  const double share = share_done(options, state), elapsed = state.stats.seconds;
+  const double share = share_done(options, state, progress.error), elapsed = state.stats.seconds;
   constexpr int width = 24;
   const int full = int(share * width);
   std::string line = fmt::format("[{:#<{}}{:.<{}}] {:5.1f} spp  {} elapsed", "", full, "", width - full,

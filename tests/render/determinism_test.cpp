@@ -39,6 +39,7 @@ void expect_same_bytes(const RenderState& a, const RenderState& b) {
   EXPECT_EQ(a.film.chunks, b.film.chunks);
   EXPECT_TRUE(same_bytes(a.film.camera_sum, b.film.camera_sum));
   EXPECT_TRUE(same_bytes(a.film.splat_sum, b.film.splat_sum));
+  EXPECT_TRUE(same_bytes(a.film.half_sum, b.film.half_sum));
   EXPECT_TRUE(same_bytes(a.film.square_sum, b.film.square_sum));
   EXPECT_TRUE(same_bytes(a.film.camera, b.film.camera));
   EXPECT_TRUE(same_bytes(a.film.splat, b.film.splat));

@@ -47,12 +47,13 @@ inline uint32_t sobol_second_reversed(uint32_t i) {
 
 inline float to_unit(uint32_t bits) { return std::min(float(bits) * 0x1p-32f, one_minus_epsilon); }
 
-/// Owen-scrambled Sobol points in independently shuffled pairs of dimensions (padding, Burley 2020), one sequence per path
-/// number and side; the index runs over passes. Or independent numbers, for comparison.
+/// Owen-scrambled Sobol points in independently shuffled pairs of dimensions (padding, Burley 2020). Each path number
+/// and side has two sequences, scrambled independently of each other, which even and odd passes take in turns: what the
+/// two halves of an image differ by is then their true error. Or independent numbers, for comparison.
 struct Sampler {
-  uint64_t key = 0;     ///< of (seed, side, path)
-  uint32_t index = 0;   ///< pass
-  uint32_t pair = 0;    ///< dimensions are handed out in pairs
+  uint64_t key = 0;    ///< of (seed, side, path), and of the half for sequences
+  uint32_t index = 0;  ///< in the sequence
+  uint32_t pair = 0;   ///< dimensions are handed out in pairs
   SamplerKind kind = SamplerKind::sobol;
 
   Vec2 next2() {
@@ -62,7 +63,8 @@ struct Sampler {
       return {to_unit(uint32_t(r)), to_unit(uint32_t(r >> 32))};
     }
     const uint64_t h = mix64(stream);
-    // Shuffle the index in nested uniform blocks, so that pairs are independent of each other yet each stays a (0,2)-sequence.
+    // Shuffle the index in nested uniform blocks, so that pairs are independent of each other yet each stays a
+    // (0,2)-sequence.
     const uint32_t shuffled = reverse_bits(laine_karras(reverse_bits(index), uint32_t(h) ^ 0x5bd1e995u));
     const uint32_t x = laine_karras(shuffled, uint32_t(h >> 32));
     const uint32_t y = laine_karras(sobol_second_reversed(shuffled), uint32_t(h));
@@ -72,7 +74,9 @@ struct Sampler {
 };
 
 inline Sampler make_sampler(SamplerKind kind, uint64_t seed, Side side, uint64_t path, uint32_t pass) {
-  return {hash(hash(seed, uint64_t(side) + 1), path), pass, 0, kind};
+  const uint64_t key = hash(hash(seed, uint64_t(side) + 1), path);
+  if (kind == SamplerKind::independent) return {key, pass, 0, kind};
+  return {hash(key, pass % 2), pass / 2, 0, kind};
 }
 
 }  // namespace ajar
