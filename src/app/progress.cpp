@@ -10,12 +10,22 @@ namespace {
 
 double spp_done(const Film& film) { return film.passes + double(film.chunks) / chunk_count(film); }
 
-double share_done(const RenderOptions& o, const RenderState& state) {
+// By the limit that comes first. The error falls as 1 / spp, so a target's share is what is wanted over what is there.
+double share_done(const RenderOptions& o, const RenderState& state, const Progress& p) {
   double share = 0;
   if (o.seconds > 0) share = std::max(share, state.stats.seconds / o.seconds);
   if (o.cpu_seconds > 0) share = std::max(share, state.stats.cpu_seconds / o.cpu_seconds);
-  if (o.seconds <= 0 && o.cpu_seconds <= 0) share = spp_done(state.film) / std::max(1u, o.spp);
+  if (o.noise > 0 && p.error_spp > 0) share = std::max(share, o.noise / p.error * spp_done(state.film) / p.error_spp);
+  const bool counted = o.noise > 0 ? o.spp > 0 : o.seconds <= 0 && o.cpu_seconds <= 0;
+  if (counted) share = std::max(share, spp_done(state.film) / std::max(1u, o.spp));
   return std::clamp(share, 0.0, 1.0);
+}
+
+void estimate(Progress& p, const RenderState& state) {
+  const double begin = wall_seconds();
+  p.error = estimated_error(state.film);
+  p.error_spp = spp_done(state.film);
+  p.error_next = state.stats.seconds + std::max(1.0, 20 * (wall_seconds() - begin));
 }
 
 std::string clock_text(double s) {
@@ -25,7 +35,7 @@ std::string clock_text(double s) {
 }
 
 void print(const Progress& progress, const RenderOptions& options, const RenderState& state, bool last) {
-  const double share = share_done(options, state), elapsed = state.stats.seconds;
+  const double share = share_done(options, state, progress), elapsed = state.stats.seconds;
   constexpr int width = 24;
   const int full = int(share * width);
   std::string line = fmt::format("[{:#<{}}{:.<{}}] {:5.1f} spp  {} elapsed", "", full, "", width - full,
@@ -52,17 +62,14 @@ void show(Progress& p, const RenderOptions& options, const RenderState& state) {
     p.last = 0;
     return;
   }
-  if (now - p.error_at > 1) {
-    p.error = estimated_error(state.film);
-    p.error_at = now;
-  }
+  if (now >= p.error_next) estimate(p, state);
   p.last = now;
   print(p, options, state, false);
 }
 
 void finish(Progress& p, const RenderOptions& options, const RenderState& state) {
   if (!p.shown) return;
-  p.error = estimated_error(state.film);
+  estimate(p, state);
   print(p, options, state, true);
 }
 

@@ -11,7 +11,8 @@ struct Progress {
   bool terminal = false;    ///< stderr is one: the line is rewritten in place
   double last = -1;         ///< render seconds of the last line
   double error = infinity;  ///< last estimate; costs a pass over the film, so it is made anew only now and then
-  double error_at = 0;
+  double error_spp = 0;     ///< it is of so many samples
+  double error_next = 1;    ///< render seconds from which it is made anew
 };
 
 Progress make_progress(bool quiet);

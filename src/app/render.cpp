@@ -24,6 +24,7 @@ namespace {
 struct Arguments {
   std::string scene, out, size, time, cpu_time, heuristic = "power", sampler = "sobol", log, reference, checkpoint,
                                                 resume, techniques, integrator;
+  std::optional<std::string> noise;
   std::vector<std::string> defines, features;
   int spp = 0, max_depth = std::numeric_limits<int>::min(), threads = 0, roulette_depth = 5;
   uint64_t seed = 0;
@@ -49,6 +50,18 @@ double parse_duration(const std::string& option, const std::string& text) {
   if (!(value > 0) || factor == 0 || !std::isfinite(value))
     throw Error(fmt::format("{} {}: not a time; write 90s, 5m or 1h", option, text));
   return value * factor;
+}
+
+double parse_noise(const std::string& text) {
+  size_t used = 0;
+  double value = 0;
+  try {
+    value = std::stod(text, &used);
+  } catch (const std::exception&) {
+  }
+  if (used != text.size() || !(value > 0) || !std::isfinite(value))
+    throw Error(fmt::format("--noise {}: not a target; write the relMSE to stop at, above 0, such as 0.01", text));
+  return value;
 }
 
 void set_size(Camera& camera, const std::string& text) {
@@ -91,6 +104,10 @@ RenderOptions render_options(const Arguments& a, Scene& scene) {
   o.spp = uint32_t(a.spp > 0 ? a.spp : scene.hints.spp > 0 ? scene.hints.spp : int(o.spp));
   if (!a.time.empty()) o.seconds = parse_duration("--time", a.time);
   if (!a.cpu_time.empty()) o.cpu_seconds = parse_duration("--cpu-time", a.cpu_time);
+  if (a.noise) {
+    o.noise = parse_noise(*a.noise);
+    o.spp = uint32_t(a.spp);  // what the scene asks for is no limit here
+  }
   o.seed = a.seed;
   o.threads = a.threads;
   o.max_depth = a.max_depth != std::numeric_limits<int>::min() ? a.max_depth : scene.hints.max_depth;
@@ -114,6 +131,7 @@ struct Log {
     next = std::max(next, state.stats.seconds) * 1.1;
     nlohmann::ordered_json j = {
         {"seconds", state.stats.seconds}, {"cpu_seconds", state.stats.cpu_seconds}, {"spp", state.film.passes}};
+    if (const double error = estimated_error(state.film); error < infinity) j["estimated_relmse"] = error;
     if (reference) j["error"] = nlohmann::ordered_json::parse(to_json(compare(develop(state.film), *reference)));
     file << j.dump() << std::endl;
   }
@@ -259,6 +277,8 @@ void add_render(CLI::App& app) {
   c->add_option("--spp", a->spp, "samples per pixel")->check(CLI::Range(1, 1 << 30));
   c->add_option("--time", a->time, "wall time to render: 90s, 5m, 1h");
   c->add_option("--cpu-time", a->cpu_time, "CPU time of all threads to render");
+  c->add_option("--noise", a->noise,
+                "relMSE to stop at, as estimated without a reference: 0.01; time and spp, if given, are limits");
   c->add_option("--seed", a->seed, "another seed, other noise");
   c->add_option("--threads", a->threads, "threads (default: all)")->check(CLI::Range(1, 4096));
   c->add_option("--size", a->size, "WIDTHxHEIGHT instead of the scene's; the crop window is dropped");

@@ -28,6 +28,7 @@ nlohmann::ordered_json options_json(const Run& run, const Film& film) {
           {"spp", o.spp},
           {"seconds", o.seconds},
           {"cpu_seconds", o.cpu_seconds},
+          {"noise", o.noise},
           {"seed", o.seed},
           {"threads", run.threads},
           {"width", film.width},
@@ -44,7 +45,7 @@ nlohmann::ordered_json options_json(const Run& run, const Film& film) {
 nlohmann::ordered_json summary(const Run& run, const RenderState& state) {
   const Counters& n = state.stats.counters;
   const double rays = double(n.camera_rays + n.light_rays + n.shadow_rays);
-  const double error = estimated_error(state.film);
+  const ErrorEstimate error = estimate_error(state.film);
   nlohmann::ordered_json j;
   j["version"] = version;
   j["scene"] = run.scene_path;
@@ -70,7 +71,12 @@ nlohmann::ordered_json summary(const Run& run, const RenderState& state) {
   j["replay_rejected"] = state.stats.replay;
   j["memory_peak_bytes"] = peak_bytes();
   j["accel_bytes"] = run.accel_bytes;
-  if (error < infinity) j["estimated_relmse"] = error;
+  if (error.relmse < infinity) {
+    j["estimated_relmse"] = error.relmse;
+    j["estimated_relmse_trimmed"] = error.relmse_trimmed;
+  }
+  if (run.options.noise > 0)
+    j["noise"] = {{"target", run.options.noise}, {"reached", error.relmse <= run.options.noise}};
   return j;
 }
 
@@ -86,7 +92,7 @@ Metadata metadata(const Run& run, const RenderState& state) {
 
 std::string checkpoint_key(const Run& run, const Film& film) {
   nlohmann::ordered_json o = options_json(run, film);
-  for (const char* budget : {"spp", "seconds", "cpu_seconds", "threads"}) o.erase(budget);
+  for (const char* budget : {"spp", "seconds", "cpu_seconds", "noise", "threads"}) o.erase(budget);
   std::error_code none_such;
   const auto bytes = std::filesystem::file_size(run.scene_path, none_such);
   return fmt::format("{} {} ({} bytes, {} triangles) {}", version,

@@ -3,6 +3,9 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <numeric>
+
 namespace ajar {
 namespace {
 
@@ -32,6 +35,50 @@ void add_splat(Film& film, const Splat& s, int y_from, int y_to) {
   }
 }
 
+// From the spread of the passes, of which there are two or more.
+glm::dvec3 variance_of_mean(const Film& film, size_t i, const glm::dvec3& mean) {
+  const double n = film.passes;
+  return glm::max((film.square_sum[i] / n - mean * mean) / (n - 1), glm::dvec3(0));
+}
+
+std::vector<glm::dvec3> means(const Film& film) {
+  std::vector<glm::dvec3> mean = film.camera_sum;
+  for (size_t i = 0; i < mean.size(); ++i)
+    mean[i] = (mean[i] + (film.splats ? film.splat_sum[i] : glm::dvec3(0))) / double(film.passes);
+  return mean;
+}
+
+// Of the pixels up to two away in x and y, without the pixel itself.
+glm::dvec3 mean_around(const Film& film, const std::vector<glm::dvec3>& mean, int x, int y) {
+  const int xa = std::max(0, x - 2), xb = std::min(film.width - 1, x + 2);
+  const int ya = std::max(0, y - 2), yb = std::min(film.height - 1, y + 2);
+  const int count = (xb - xa + 1) * (yb - ya + 1) - 1;
+  const glm::dvec3 own = mean[size_t(y) * film.width + x];
+  if (count == 0) return own;
+  glm::dvec3 total = -own;
+  for (int py = ya; py <= yb; ++py)
+    for (int px = xa; px <= xb; ++px) total += mean[size_t(py) * film.width + px];
+  return total / double(count);
+}
+
+// Mean over the channels of the squared error over that of the true value. A sample that makes a pixel wrong makes it
+// bright too, and must not hide its error by that: so far as the passes disagree about the pixel, the neighbours have a
+// say.
+double pixel_error(const Film& film, const std::vector<glm::dvec3>& mean, int x, int y) {
+  const size_t i = size_t(y) * film.width + x;
+  const double n = film.passes, a = (film.passes + 1) / 2, b = film.passes / 2;
+  const glm::dvec3 near = mean_around(film, mean, x, y), v = variance_of_mean(film, i, mean[i]);
+  double sum = 0;
+  for (int c = 0; c < 3; ++c) {
+    const double m = mean[i][c], half = film.half_sum[i][c] / a, other = (m * n - film.half_sum[i][c]) / b;
+    const double square = (half - other) * (half - other) * a * b / (n * n);  // (E1)
+    const double trust = m * m > 0 ? m * m / (m * m + 20 * v[c]) : 0;         // (E2)
+    const double dim = std::min(m * m, near[c] * near[c]);
+    sum += square * (trust / (m * m + 0.01) + (1 - trust) / (dim + 0.01));  // (E3)
+  }
+  return sum / 3;
+}
+
 }  // namespace
 
 Film make_film(const Camera& camera, const Filter& filter, bool splats) {
@@ -43,6 +90,7 @@ Film make_film(const Camera& camera, const Filter& filter, bool splats) {
   const size_t n = film.pixels();
   film.camera.resize(n);
   film.camera_sum.resize(n);
+  film.half_sum.resize(n);
   film.square_sum.resize(n);
   if (splats) film.splat.resize(n), film.splat_sum.resize(n);
   return film;
@@ -73,6 +121,7 @@ void finish_pass(Film& film) {
         film.splat[i] = Rgb(0);
         x += s;
       }
+      if (film.passes % 2 == 0) film.half_sum[i] += x;
       film.square_sum[i] += x * x;
     }
   });
@@ -101,25 +150,29 @@ Picture variance(const Film& film) {
   Picture out{
       film.width, film.height, {"Variance.R", "Variance.G", "Variance.B"}, std::vector<float>(3 * film.pixels())};
   if (film.passes < 2) return out;
-  const double n = film.passes;
+  const std::vector<glm::dvec3> mean = means(film);
   for (size_t i = 0; i < film.pixels(); ++i) {
-    const glm::dvec3 mean = (film.camera_sum[i] + (film.splats ? film.splat_sum[i] : glm::dvec3(0))) / n;
-    const glm::dvec3 v = glm::max((film.square_sum[i] / n - mean * mean) / (n - 1), glm::dvec3(0));
+    const glm::dvec3 v = variance_of_mean(film, i, mean[i]);
     for (int c = 0; c < 3; ++c) out.pixels[3 * i + c] = float(v[c]);
   }
   return out;
 }
 
-double estimated_error(const Film& film) {
-  if (film.passes < 2) return infinity;
-  const double n = film.passes;
-  double sum = 0;
-  for (size_t i = 0; i < film.pixels(); ++i) {
-    const glm::dvec3 mean = (film.camera_sum[i] + (film.splats ? film.splat_sum[i] : glm::dvec3(0))) / n;
-    const glm::dvec3 v = glm::max((film.square_sum[i] / n - mean * mean) / (n - 1), glm::dvec3(0));
-    for (int c = 0; c < 3; ++c) sum += v[c] / (mean[c] * mean[c] + 0.01);
-  }
-  return sum / (3.0 * double(film.pixels()));
+ErrorEstimate estimate_error(const Film& film) {
+  if (film.passes < 2) return {};
+  const std::vector<glm::dvec3> mean = means(film);
+  if (std::all_of(mean.begin(), mean.end(), [](const glm::dvec3& m) { return m == glm::dvec3(0); })) return {};
+  std::vector<double> error(film.pixels());
+  tbb::parallel_for(0, film.height, [&](int y) {
+    for (int x = 0; x < film.width; ++x) error[size_t(y) * film.width + x] = pixel_error(film, mean, x, y);
+  });
+  const double more = film.passes / (film.passes + share_done(film));
+  ErrorEstimate out;
+  out.relmse = more * std::accumulate(error.begin(), error.end(), 0.0) / double(error.size());
+  const auto kept = error.end() - std::ptrdiff_t(error.size() / 1000);
+  if (kept != error.end()) std::nth_element(error.begin(), kept, error.end());
+  out.relmse_trimmed = more * std::accumulate(error.begin(), kept, 0.0) / double(kept - error.begin());
+  return out;
 }
 
 }  // namespace ajar

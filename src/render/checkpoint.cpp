@@ -10,7 +10,7 @@
 namespace ajar {
 namespace {
 
-constexpr char magic[8] = {'A', 'J', 'A', 'R', 'c', 'k', '0', '1'};
+constexpr char magic[8] = {'A', 'J', 'A', 'R', 'c', 'k', '0', '2'};
 
 // Plain bytes in the order of the fields; the same machine or one of the same byte order reads them.
 struct Writer {
@@ -57,7 +57,7 @@ template <class Io, class State>
 void film_fields(Io& io, State& film) {
   io.value(film.width), io.value(film.height), io.value(film.passes), io.value(film.chunks);
   io.array(film.camera), io.array(film.splat);
-  io.array(film.camera_sum), io.array(film.splat_sum), io.array(film.square_sum);
+  io.array(film.camera_sum), io.array(film.splat_sum), io.array(film.half_sum), io.array(film.square_sum);
 }
 
 }  // namespace
@@ -110,8 +110,9 @@ void load_checkpoint(const std::string& path, const std::string& key, RenderStat
   }
   const Film& film = state.film;
   const size_t splats = film.splats ? n : 0;
-  if (film.pixels() != n || film.camera.size() != n || film.camera_sum.size() != n || film.square_sum.size() != n ||
-      film.splat.size() != splats || film.splat_sum.size() != splats || film.chunks >= chunk_count(film))
+  if (film.pixels() != n || film.camera.size() != n || film.camera_sum.size() != n || film.half_sum.size() != n ||
+      film.square_sum.size() != n || film.splat.size() != splats || film.splat_sum.size() != splats ||
+      film.chunks >= chunk_count(film))
     throw Error(path + ": checkpoint is damaged, start again without --resume");
 }
 

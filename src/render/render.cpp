@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <bit>
 #include <chrono>
 #include <ctime>
 
@@ -79,6 +80,10 @@ Job make_job(const Scene& scene, const Accel& accel, const RenderOptions& option
   return job;
 }
 
+// Whether the target is looked at after so many passes: even numbers with at most four significant bits. Looks thin out
+// as the error falls, so that few of them get the chance to be lucky, and are the same ones when a render is resumed.
+bool is_checked(uint32_t passes) { return passes >= 8 && passes % std::max(2u, std::bit_floor(passes) / 8) == 0; }
+
 void note_rejected(RenderStats& stats, const std::vector<uint64_t>& pixels, const Film& film, uint64_t seed) {
   for (const uint64_t p : pixels)
     if (p != Scratch::no_path && stats.replay.size() < 5)
@@ -133,7 +138,13 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   const uint32_t all = chunk_count(film);
   const auto out_of_budget = [&] {
     read_clocks();
-    if (!timed) return film.passes >= options.spp;
+    if (!timed && options.noise <= 0) return film.passes >= options.spp;
+    if (options.noise > 0) {
+      if (options.spp > 0 && film.passes >= options.spp) return true;
+      if (film.chunks == 0 && is_checked(film.passes) &&
+          arena.execute([&] { return estimated_error(film); }) <= options.noise)
+        return true;
+    }
     return (options.seconds > 0 && stats.seconds >= options.seconds) ||
            (options.cpu_seconds > 0 && stats.cpu_seconds >= options.cpu_seconds);
   };

@@ -39,6 +39,7 @@ void expect_same_bytes(const RenderState& a, const RenderState& b) {
   EXPECT_EQ(a.film.chunks, b.film.chunks);
   EXPECT_TRUE(same_bytes(a.film.camera_sum, b.film.camera_sum));
   EXPECT_TRUE(same_bytes(a.film.splat_sum, b.film.splat_sum));
+  EXPECT_TRUE(same_bytes(a.film.half_sum, b.film.half_sum));
   EXPECT_TRUE(same_bytes(a.film.square_sum, b.film.square_sum));
   EXPECT_TRUE(same_bytes(a.film.camera, b.film.camera));
   EXPECT_TRUE(same_bytes(a.film.splat, b.film.splat));
@@ -160,6 +161,63 @@ TEST(Determinism, DamagedOrForeignCheckpointsAreErrors) {
     RenderState fresh = start_render(scene, o);
     EXPECT_THROW(load_checkpoint(file.path, "key", fresh), Error) << part;
   }
+}
+
+TEST(Determinism, NoiseStopsAtTheSamePassWithAnyThreads) {
+  const Scene scene = strip(false);
+  const Accel accel(scene);
+  RenderOptions o = options_of("path", 0);
+  o.noise = 0.05, o.threads = 1;
+  const RenderState one = rendered(scene, accel, o);
+  EXPECT_LE(estimated_error(one.film), o.noise);
+  EXPECT_GE(one.film.passes, 8u);
+  o.threads = 3;
+  expect_same_bytes(one, rendered(scene, accel, o));
+  // The pass where it stopped was the first look at which the target was reached.
+  RenderOptions straight = options_of("path", one.film.passes);
+  std::vector<uint32_t> reached;
+  RenderState state = start_render(scene, straight);
+  render(scene, accel, straight, state, [&](const RenderState& s) {
+    const uint32_t n = s.film.passes, step = n < 32 ? 2 : n < 64 ? 4 : n < 128 ? 8 : 16;
+    if (n >= 8 && n % step == 0 && estimated_error(s.film) <= o.noise) reached.push_back(n);
+    return true;
+  });
+  EXPECT_EQ(reached, std::vector{one.film.passes});
+  expect_same_bytes(one, state);
+}
+
+TEST(Determinism, NoiseStopsAtTheSamePassAfterStops) {
+  const Scene scene = strip(false);
+  const Accel accel(scene);
+  RenderOptions o = options_of("bdpt", 0);
+  o.noise = 0.04;
+  const RenderState straight = rendered(scene, accel, o);
+  const File file("ajar_noise");
+  RenderState state = start_render(scene, o);
+  uint32_t before = 0;
+  do {  // two passes at a time, each from a checkpoint
+    before = state.film.passes;
+    int looks = 0;
+    render(scene, accel, o, state, [&](const RenderState&) { return ++looks < 2; });
+    save_checkpoint(file.path, "key", state);
+    state = start_render(scene, o);
+    load_checkpoint(file.path, "key", state);
+  } while (state.film.passes > before);
+  expect_same_bytes(straight, state);
+}
+
+TEST(Determinism, NoiseKeepsToTheLimits) {
+  const Scene scene = strip(false);
+  const Accel accel(scene);
+  RenderOptions o = options_of("path", 5);
+  o.noise = 1e-9;
+  EXPECT_EQ(rendered(scene, accel, o).film.passes, 5u);
+  o.seconds = 1e-6;
+  EXPECT_LE(rendered(scene, accel, o).film.passes, 1u) << "time is looked at too";
+  o.seconds = 1e6;
+  EXPECT_EQ(rendered(scene, accel, o).film.passes, 5u);
+  o.seconds = 0, o.spp = 1000, o.noise = 1e9;
+  EXPECT_EQ(rendered(scene, accel, o).film.passes, 8u) << "not before 8 passes, however well it looks";
 }
 
 TEST(Determinism, UnknownIntegratorIsAnError) {

@@ -50,11 +50,12 @@ inline uint32_t sobol_second_reversed(uint32_t i) {
 
 inline float to_unit(uint32_t bits) { return std::min(float(bits) * 0x1p-32f, one_minus_epsilon); }
 
-/// Owen-scrambled Sobol points in independently shuffled pairs of dimensions (padding, Burley 2020), one sequence per
-/// path number and side; the index runs over passes. Or independent numbers, for comparison.
+/// Owen-scrambled Sobol points in independently shuffled pairs of dimensions (padding, Burley 2020). Each path number
+/// and side has two sequences, scrambled independently of each other, which even and odd passes take in turns: what the
+/// two halves of an image differ by is then their true error. Or independent numbers, for comparison.
 struct Sampler {
-  uint64_t key = 0;    ///< of (seed, side, path)
-  uint32_t index = 0;  ///< pass, its bits reversed
+  uint64_t key = 0;    ///< of (seed, side, path), and of the half for sequences
+  uint32_t index = 0;  ///< in the sequence, its bits reversed
   uint32_t pair = 0;   ///< dimensions are handed out in pairs
   SamplerKind kind = SamplerKind::sobol;
 
@@ -80,7 +81,9 @@ struct Sampler {
 };
 
 inline Sampler make_sampler(SamplerKind kind, uint64_t seed, Side side, uint64_t path, uint32_t pass) {
-  return {hash(hash(seed, uint64_t(side) + 1), path), reverse_bits(pass), 0, kind};
+  const uint64_t key = hash(hash(seed, uint64_t(side) + 1), path);
+  if (kind == SamplerKind::independent) return {key, reverse_bits(pass), 0, kind};
+  return {hash(key, pass % 2), reverse_bits(pass / 2), 0, kind};
 }
 
 }  // namespace ajar

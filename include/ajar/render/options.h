@@ -11,8 +11,9 @@ namespace ajar {
 
 struct RenderOptions {
   std::string integrator = "bdpt";      ///< one of integrator_names()
-  uint32_t spp = 64;                    ///< passes; with a time budget the budget decides
+  uint32_t spp = 64;                    ///< passes; with a time budget the budget decides, unless there is a noise too
   double seconds = 0, cpu_seconds = 0;  ///< budgets after loading, wall and of all threads; 0: none
+  double noise = 0;  ///< estimated relMSE to stop at, with the budgets as limits (spp 0: none); 0: no such target
   uint64_t seed = 0;
   int threads = 0;         ///< 0: all
   int max_depth = -1;      ///< edges of a path: 1 sees lights alone; -1: unlimited

@@ -28,8 +28,9 @@ using Monitor = std::function<bool(const RenderState&)>;
 
 /// Throws Error for an unknown integrator.
 RenderState start_render(const Scene& scene, const RenderOptions& options);
-/// Traces until spp or budget is reached or the monitor says stop. Deterministic for spp: the same bytes with any
-/// number of threads, and when stopped and called again with the same state.
+/// Traces until spp, budget or noise target is reached or the monitor says stop. The target is looked at after 8, 10,
+/// 12, 14, 16, 18, 20 ... 32, 36 ... passes. Deterministic for spp and noise: the same bytes with any number of
+/// threads, and when stopped and called again with the same state.
 void render(const Scene& scene, const Accel& accel, const RenderOptions& options, RenderState& state,
             const Monitor& monitor);
 

@@ -1,0 +1,102 @@
+// ajar render, as a user calls it: the target for the error and what is recorded of it.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "ajar/core/error.h"
+#include "app/commands.h"
+
+namespace ajar {
+namespace {
+
+struct Render : testing::Test {
+  std::filesystem::path folder;
+  std::string out, log, state;
+
+  void SetUp() override {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder = std::filesystem::path(testing::TempDir()) /
+             ("ajar render " + std::string(info->name()) + " " + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder);
+    out = (folder / "image.exr").string(), log = (folder / "log").string(), state = (folder / "state").string();
+  }
+  void TearDown() override { std::filesystem::remove_all(folder); }
+
+  /// Renders the box scene, small; the record.
+  nlohmann::json run(std::vector<std::string> arguments) const {
+    CLI::App app;
+    add_render(app);
+    const std::vector<std::string> usual = {"render", AJAR_SOURCE_DIR "/scenes/box/box.xml",
+                                            "-q",     "--size",
+                                            "24x16",  "--max-depth",
+                                            "4",      "--integrator",
+                                            "path",   "-o",
+                                            out};
+    arguments.insert(arguments.begin(), usual.begin(), usual.end());
+    std::reverse(arguments.begin(), arguments.end());
+    app.parse(arguments);
+    std::ifstream record(folder / "image.json");
+    return nlohmann::json::parse(record);
+  }
+
+  std::string error_of(const std::string& noise) const {
+    try {
+      run({"--noise", noise});
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return {};
+  }
+};
+
+TEST_F(Render, NoiseStopsAndIsRecorded) {
+  const auto json = run({"--noise", "0.02", "--log", log});
+  EXPECT_EQ(json["noise"]["target"], 0.02);
+  EXPECT_EQ(json["noise"]["reached"], true);
+  EXPECT_EQ(json["options"]["noise"], 0.02);
+  EXPECT_LE(json["estimated_relmse"].get<double>(), 0.02);
+  EXPECT_LE(json["estimated_relmse_trimmed"].get<double>(), json["estimated_relmse"].get<double>());
+  EXPECT_EQ(json["interrupted"], false);
+  EXPECT_GE(json["spp"].get<double>(), 8);
+  std::ifstream lines(log);
+  std::string line, last;
+  while (std::getline(lines, line)) last = line;
+  EXPECT_EQ(nlohmann::json::parse(last)["estimated_relmse"], json["estimated_relmse"]);
+}
+
+TEST_F(Render, NoiseOutOfReachEndsAtTheLimit) {
+  const auto counted = run({"--noise", "1e-12", "--spp", "3"});
+  EXPECT_EQ(counted["spp"], 3);
+  EXPECT_EQ(counted["noise"]["reached"], false);
+  const auto timed = run({"--noise", "1e-12", "--time", "0.05s"});
+  EXPECT_EQ(timed["noise"]["reached"], false);
+  EXPECT_LT(timed["seconds"]["trace"].get<double>(), 2);
+  EXPECT_FALSE(run({"--spp", "2"}).contains("noise")) << "no target, nothing to say about it";
+}
+
+// The target is a budget: a render may go on from a state that was made for another.
+TEST_F(Render, ResumeMayAimLower) {
+  const auto straight = run({"--noise", "0.02"});
+  const double first = run({"--noise", "0.05", "--checkpoint", state})["spp"];
+  const auto second = run({"--noise", "0.02", "--resume", state});
+  EXPECT_LT(first, second["spp"].get<double>());
+  EXPECT_EQ(second["spp"], straight["spp"]);
+  EXPECT_EQ(second["estimated_relmse"], straight["estimated_relmse"]);
+}
+
+TEST_F(Render, WhatIsNoTargetIsAnError) {
+  for (const char* noise : {"0", "-0.1", "nan", "inf", "low", "0.1%", "", "1e999"}) {
+    const std::string error = error_of(noise);
+    EXPECT_EQ(error.find("--noise " + std::string(noise) + ": not a target"), 0u) << noise << ": " << error;
+    EXPECT_NE(error.find("0.01"), std::string::npos) << "an example";
+  }
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+}  // namespace
+}  // namespace ajar

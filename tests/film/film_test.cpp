@@ -1,0 +1,118 @@
+// The estimate of the error against figures worked out by hand.
+#include "ajar/film/film.h"
+
+#include <gtest/gtest.h>
+
+namespace ajar {
+namespace {
+
+Film film_of(int width, int height, bool splats = false) {
+  Camera camera;
+  camera.crop_width = camera.width = width, camera.crop_height = camera.height = height;
+  return make_film(camera, make_filter(FilterKind::box), splats);
+}
+
+void pass(Film& film, const std::vector<Rgb>& camera, const std::vector<Rgb>& splat = {}) {
+  film.camera = camera;
+  if (film.splats) film.splat = splat;
+  finish_pass(film);
+}
+
+std::vector<Rgb> grey(std::initializer_list<float> values) {
+  std::vector<Rgb> out;
+  for (const float v : values) out.emplace_back(v);
+  return out;
+}
+
+TEST(ErrorEstimate, NeedsTwoPassesAndLight) {
+  Film film = film_of(2, 1);
+  EXPECT_EQ(estimated_error(film), infinity);
+  pass(film, grey({1, 1}));
+  EXPECT_EQ(estimated_error(film), infinity);
+  pass(film, grey({1, 1}));
+  EXPECT_EQ(estimated_error(film), 0) << "halves agree";
+  Film dark = film_of(2, 1);
+  for (int i = 0; i < 8; ++i) pass(dark, grey({0, 0}));
+  EXPECT_EQ(estimated_error(dark), infinity) << "nothing seen says nothing";
+}
+
+// E1 to E3 of docs/notation.md: the square of half the difference of the halves, over the pixel's mean or, the more its
+// passes disagree, over the mean around it, if that is less.
+double error(double square, double mean, double variance, double around) {
+  const double trust = mean * mean / (mean * mean + 20 * variance), dim = std::min(mean, around);
+  return square * (trust / (mean * mean + 0.01) + (1 - trust) / (dim * dim + 0.01));
+}
+
+// Two pixels, each the other's only neighbour. Halves of the left one: 3 and 1; of the right one 0.5 and 0.5.
+TEST(ErrorEstimate, IsTheDifferenceOfHalvesOverTheLight) {
+  Film film = film_of(2, 1);
+  pass(film, grey({3, 0.5f}));
+  pass(film, grey({1, 0.5f}));
+  // The mean is 2 with variance 1, so it is trusted by 4 / 24: 1 / 6 / 4.01 + 5 / 6 / 0.26.
+  const double left = 3.24669097 * (3. - 1) * (3. - 1) / 4;
+  EXPECT_NEAR(left, error(1, 2, 1, 0.5), 1e-7);
+  EXPECT_NEAR(estimated_error(film), left / 2, 1e-7);
+  EXPECT_EQ(estimate_error(film).relmse_trimmed, estimated_error(film)) << "a thousandth of two pixels is none";
+}
+
+// Passes 1, 2, 6 of the left pixel: even ones have the mean 3.5, the odd one 2; their mean 3 leans to the first by 2
+// : 1.
+TEST(ErrorEstimate, WeighsUnequalHalves) {
+  Film film = film_of(2, 1);
+  for (const float v : {1.f, 2.f, 6.f}) pass(film, {Rgb(v, 1, 1), Rgb(1)});
+  const double left = error(1.5 * 1.5 * 2 / 9, 3, (4. + 1 + 9) / 2 / 3, 1);  // in one channel of three
+  EXPECT_NEAR(estimated_error(film), left / 6, 1e-12);
+}
+
+TEST(ErrorEstimate, CountsSplatsWithTheCamera) {
+  Film film = film_of(2, 1, true);  // two light subpaths: splats count half
+  pass(film, grey({1, 1}), grey({2, 0}));
+  pass(film, grey({0, 1}), grey({0, 0}));
+  EXPECT_NEAR(estimated_error(film), error(1, 1, 1, 1) / 2, 1e-12);
+}
+
+// What is done of the pass at work is in the image, so it lowers the error of the image.
+TEST(ErrorEstimate, CountsThePassAtWorkByItsShare) {
+  Film film = film_of(32, 16);  // two chunks
+  std::vector<Rgb> bright(film.pixels(), Rgb(3)), dim(film.pixels(), Rgb(1));
+  pass(film, bright);
+  pass(film, dim);
+  const double whole = estimated_error(film);
+  EXPECT_NEAR(whole, error(1, 2, 1, 2), 1e-12);
+  film.chunks = 1;
+  EXPECT_NEAR(estimated_error(film), whole * 2 / 2.5, 1e-12);
+}
+
+// A pixel that one sample lit up is wrong by as much as it shines, and must not be excused by its own brightness.
+TEST(ErrorEstimate, FirefliesCountInFullAndAreTrimmed) {
+  Film film = film_of(40, 25);
+  std::vector<Rgb> calm(film.pixels(), Rgb(1)), lit = calm;
+  lit[12 * 40 + 20] = Rgb(2001);
+  pass(film, lit);
+  pass(film, calm);
+  const double truth = 1000. * 1000 / 1.01 / 1000;
+  EXPECT_NEAR(estimated_error(film), truth, 0.05 * truth);
+  EXPECT_EQ(estimate_error(film).relmse_trimmed, 0) << "one of a thousand is left out";
+}
+
+// In a corner of the picture the window is what is left of it: 3 x 3 pixels without the corner itself.
+TEST(ErrorEstimate, NeighboursEndAtTheBorder) {
+  Film film = film_of(5, 5);
+  std::vector<Rgb> even(25, Rgb(0)), odd;
+  for (const int i : {1, 6, 12}) even[size_t(i)] = Rgb(1);  // (1,0), (1,1), (2,2), all in reach of the corner
+  even[3] = even[15] = Rgb(7);                              // (3,0) and (0,3), out of its reach
+  odd = even;
+  even[0] = Rgb(2);
+  pass(film, even);
+  pass(film, odd);
+  EXPECT_NEAR(estimated_error(film), error(1, 1, 1, 3. / 8) / 25, 1e-12);
+}
+
+TEST(Variance, IsTheSpreadOfPassesOverTheirNumber) {
+  Film film = film_of(1, 1);
+  for (const float v : {1.f, 2.f, 6.f}) pass(film, grey({v}));
+  EXPECT_NEAR(variance(film).pixels[0], (4. + 1 + 9) / 2 / 3, 1e-6);
+}
+
+}  // namespace
+}  // namespace ajar
