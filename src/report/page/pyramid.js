@@ -1,0 +1,102 @@
+// What single strategies (s, t) bring, and pictures of learned fields; made when they are asked for.
+
+/** An on-demand part; fill(box) runs when it is first opened. */
+function drawer(title, class_name, fill) {
+  const box = el('div', {class: 'drawer'}), details = el('details', {class: class_name}, el('summary', {}, title), box);
+  details.addEventListener('toggle', () => {
+    if (details.open) fill(box);
+  }, {once: true});
+  return details;
+}
+
+function energy({red, green, blue, scale}) {
+  let sum = 0;
+  for (let i = 0; i < red.length; ++i) {
+    const value = scale * luminance([half_values[red[i]], half_values[green[i]], half_values[blue[i]]]);
+    if (Number.isFinite(value)) sum += value;
+  }
+  return sum / red.length;
+}
+
+/** Rows of equal s + t, as in Veach's figures: s grows to the right. */
+async function draw_pyramid(method, kind, exposure, box) {
+  const techniques = method.techniques.filter(technique => technique[kind] && files[technique[kind]]);
+  const images = await Promise.all(techniques.map(technique => load(technique[kind])));
+  const means = images.map(energy), all = means.reduce((a, b) => a + b, 0);
+  const rows = new Map();
+  techniques.forEach(({s, t}, i) => {
+    const image = images[i], canvas = el('canvas', {
+                               width: image.width,
+                               height: image.height,
+                               'aria-label': `s = ${s}, t = ${t}`,
+                               'data-strategy': `${s} ${t}`
+                             });
+    canvas.getContext('2d').putImageData(toned(image, exposure), 0, 0);
+    const share = all > 0 ? means[i] / all : 0;
+    const cell =
+        el('figure', {title: `${s} light and ${t} camera vertices; mean luminance ${number(means[i])}`}, canvas,
+           el('figcaption', {}, `s ${s}, t ${t}`,
+              kind === 'weighted' ? el('span', {class: 'range'}, ` ${share === 0 ? '0' : percent(share)}`) : null));
+    canvas.addEventListener('click', () => cell.classList.toggle('large'));
+    if (!rows.has(s + t)) rows.set(s + t, []);
+    rows.get(s + t).push({s, cell});
+  });
+  box.replaceChildren(
+      ...[...rows]
+          .sort(([a], [b]) => a - b)
+          .map(
+              ([k, cells]) =>
+                  el('div', {class: 'pyramid-row'}, el('span', {class: 'label'}, `${k - 1} edge${k === 2 ? '' : 's'}`),
+                     cells.sort((a, b) => a.s - b.s).map(({cell}) => cell))));
+}
+
+function fill_pyramid(methods, box) {
+  const state = {method: methods[0], kind: 'weighted', exposure: 0};
+  const rows = el('div', {class: 'pyramid'}), text = el('output', {}, '0.0 stops');
+  const draw = () => draw_pyramid(state.method, state.kind, state.exposure, rows);
+  const set = change => {
+    Object.assign(state, change);
+    draw();
+  };
+  const exposure =
+      slider('Exposure of the strategies', {min: -8, max: 12, step: 0.5, value: 0, name: 'exposure'}, value => {
+        text.textContent = `${value > 0 ? '+' : ''}${value.toFixed(1)} stops`.replace('-', '−');
+        set({exposure: value});
+      });
+  const raw = methods.some(({techniques}) => techniques.some(technique => technique.raw));
+  box.append(
+      el('div', {class: 'tools'},
+         methods.length > 1 ?
+             switcher('Method', methods.map(({name}, i) => [String(i), name]), '0', i => set({method: methods[i]})) :
+             el('span', {}, swatch(methods[0].name), methods[0].name),
+         raw ? switcher('Show', [['weighted', 'Weighted'], ['raw', 'Raw']], 'weighted', kind => set({kind})) : null,
+         labelled('Exposure', exposure, text)),
+      el('div', {class: 'wide'}, rows),
+      el('p', {class: 'note'},
+         'One picture for each number s of light and t of camera vertices; a row has the paths of one length. ' +
+             'Weighted: what it adds to the image, with its share of the light; ' +
+             'raw: its own estimate of all of it. Click a picture to enlarge it.'));
+  draw();
+}
+
+function fill_fields(methods, box) {
+  for (const {name, fields} of methods)
+    box.append(
+        el('h4', {}, swatch(name), name),
+        el('div', {class: 'fields'},
+           fields.filter(({image}) => image && files[image])
+               .map(
+                   ({title, image}) =>
+                       el('figure', {}, el('img', {src: `data:image/png;base64,${raw_text(image)}`, alt: title ?? ''}),
+                          el('figcaption', {}, title ?? '')))));
+}
+
+function write_strategies(scene, parent) {
+  const methods = scene.methods ?? [];
+  const with_techniques =
+      methods.filter(({techniques}) => techniques?.some(({weighted}) => weighted && files[weighted]));
+  const with_fields = methods.filter(({fields}) => fields?.some(({image}) => image && files[image]));
+  if (with_techniques.length)
+    parent.append(drawer('Strategies (s, t)', 'strategies', box => fill_pyramid(with_techniques, box)));
+  if (with_fields.length) parent.append(drawer('Learned fields', 'learned', box => fill_fields(with_fields, box)));
+}
