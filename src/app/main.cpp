@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", std::string("ajar ") + ajar::version);
   ajar::add_render(app);
   ajar::add_compare(app);
+  ajar::add_bench(app);
   ajar::add_report(app);
   try {
     app.parse(argc, argv);

@@ -8,30 +8,22 @@
 namespace ajar {
 namespace {
 
-double spp_done(const Film& film) { return film.passes + double(film.chunks) / chunk_count(film); }
-
 // By the limit that comes first. The error falls as 1 / spp, so a target's share is what is wanted over what is there.
 double share_done(const RenderOptions& o, const RenderState& state, const Progress& p) {
   double share = 0;
   if (o.seconds > 0) share = std::max(share, state.stats.seconds / o.seconds);
   if (o.cpu_seconds > 0) share = std::max(share, state.stats.cpu_seconds / o.cpu_seconds);
-  if (o.noise > 0 && p.error_spp > 0) share = std::max(share, o.noise / p.error * spp_done(state.film) / p.error_spp);
+  if (o.noise > 0 && p.error_spp > 0) share = std::max(share, o.noise / p.error * spp_of(state.film) / p.error_spp);
   const bool counted = o.noise > 0 ? o.spp > 0 : o.seconds <= 0 && o.cpu_seconds <= 0;
-  if (counted) share = std::max(share, spp_done(state.film) / std::max(1u, o.spp));
+  if (counted) share = std::max(share, spp_of(state.film) / std::max(1u, o.spp));
   return std::clamp(share, 0.0, 1.0);
 }
 
 void estimate(Progress& p, const RenderState& state) {
   const double begin = wall_seconds();
   p.error = estimated_error(state.film);
-  p.error_spp = spp_done(state.film);
+  p.error_spp = spp_of(state.film);
   p.error_next = state.stats.seconds + std::max(1.0, 20 * (wall_seconds() - begin));
-}
-
-std::string clock_text(double s) {
-  if (s < 100) return fmt::format("{:.1f} s", s);
-  if (s < 6000) return fmt::format("{}:{:02}", int(s) / 60, int(s) % 60);
-  return fmt::format("{}:{:02}:{:02}", int(s) / 3600, int(s) / 60 % 60, int(s) % 60);
 }
 
 void print(const Progress& progress, const RenderOptions& options, const RenderState& state, bool last) {
@@ -39,7 +31,7 @@ void print(const Progress& progress, const RenderOptions& options, const RenderS
   constexpr int width = 24;
   const int full = int(share * width);
   std::string line = fmt::format("[{:#<{}}{:.<{}}] {:5.1f} spp  {} elapsed", "", full, "", width - full,
-                                 spp_done(state.film), clock_text(elapsed));
+                                 spp_of(state.film), clock_text(elapsed));
   if (!last && share > 0) line += fmt::format("  {} left", clock_text(elapsed * (1 - share) / share));
   if (progress.error < infinity) line += fmt::format("  relMSE ~ {:.3g}", progress.error);
   std::fprintf(stderr, progress.terminal ? (last ? "\r%s\033[K\n" : "\r%s\033[K") : "%s\n", line.c_str());
@@ -47,6 +39,12 @@ void print(const Progress& progress, const RenderOptions& options, const RenderS
 }
 
 }  // namespace
+
+std::string clock_text(double s) {
+  if (s < 100) return fmt::format("{:.1f} s", s);
+  if (s < 6000) return fmt::format("{}:{:02}", int(s) / 60, int(s) % 60);
+  return fmt::format("{}:{:02}:{:02}", int(s) / 3600, int(s) / 60 % 60, int(s) % 60);
+}
 
 Progress make_progress(bool quiet) {
   Progress p;

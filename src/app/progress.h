@@ -2,6 +2,8 @@
 // Leaves: one line on the terminal that tells how far it is.
 #pragma once
 
+#include <string>
+
 #include "ajar/render/render.h"
 
 namespace ajar {
@@ -15,6 +17,8 @@ struct Progress {
   double error_next = 1;    ///< render seconds from which it is made anew
 };
 
+/// "12.3 s", "4:05", "1:02:03".
+std::string clock_text(double seconds);
 Progress make_progress(bool quiet);
 void show(Progress& progress, const RenderOptions& options, const RenderState& state);
 void finish(Progress& progress, const RenderOptions& options, const RenderState& state);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -16,6 +15,7 @@
 #include "ajar/scene/load.h"
 #include "commands.h"
 #include "progress.h"
+#include "stop.h"
 #include "summary.h"
 
 namespace ajar {
@@ -30,13 +30,6 @@ struct Arguments {
   uint64_t seed = 0;
   bool png = false, half = false, quiet = false, lenient = false;
 };
-
-volatile std::sig_atomic_t stop_asked = 0;  // the one thing a signal handler may touch
-
-void ask_to_stop(int signal) {
-  stop_asked = 1;
-  std::signal(signal, SIG_DFL);  // a second one ends the program at once
-}
 
 double parse_duration(const std::string& option, const std::string& text) {
   size_t used = 0;
@@ -69,10 +62,7 @@ void set_size(Camera& camera, const std::string& text) {
   if (std::sscanf(text.c_str(), "%dx%d%n", &w, &h, &end) != 2 || size_t(end) != text.size() || w < 1 || h < 1 ||
       w > 65536 || h > 65536)
     throw Error(fmt::format("--size {}: write WIDTHxHEIGHT, each 1 to 65536", text));
-  camera.width = camera.crop_width = w;
-  camera.height = camera.crop_height = h;
-  camera.crop_x = camera.crop_y = 0;
-  camera.plane.y = camera.plane.x * float(h) / float(w);
+  set_size(camera, w, h);
 }
 
 LoadOptions load_options(const Arguments& a) {
@@ -210,12 +200,6 @@ void warn(const RenderState& state) {
   fmt::print(stderr, "\n");
 }
 
-uint64_t count_triangles(const Scene& scene) {
-  uint64_t n = 0;
-  for (const Mesh& m : scene.meshes) n += m.triangles.size();
-  return n;
-}
-
 void run_render(Arguments a) {
   const double wall0 = wall_seconds(), cpu0 = process_cpu_seconds();
   if (a.out.empty()) a.out = std::filesystem::path(a.scene).stem().string() + ".exr";
@@ -241,8 +225,7 @@ void run_render(Arguments a) {
   Log log = open_log(a, state.film);
   Progress progress = make_progress(a.quiet);
   double saved = state.stats.seconds;
-  std::signal(SIGINT, ask_to_stop);
-  std::signal(SIGTERM, ask_to_stop);
+  catch_stop();
   RenderOptions options = run.options;  // the user's time begins after loading: building counts
   if (options.seconds > 0) options.seconds = std::max(options.seconds - run.build_seconds, 1e-3);
   if (options.cpu_seconds > 0) options.cpu_seconds = std::max(options.cpu_seconds - run.build_cpu, 1e-3);
@@ -253,9 +236,9 @@ void run_render(Arguments a) {
       saved = s.stats.seconds;
       save_checkpoint(a.checkpoint, key, s);
     }
-    return stop_asked == 0;
+    return !stop_asked();
   });
-  run.interrupted = stop_asked != 0;
+  run.interrupted = stop_asked();
   finish(progress, run.options, state);
   log.write(state, true);
   if (run.interrupted && !a.quiet) fmt::print(stderr, "ajar: interrupted; writing what is there\n");

@@ -87,6 +87,12 @@ void write_aside(const std::string& path, const void* bytes, size_t size) {
   }
 }
 
+void make_folder(const std::string& path) {
+  std::error_code failure;
+  std::filesystem::create_directories(path, failure);
+  if (failure) throw Error(fmt::format("{}: this folder cannot be made ({}); name another", path, failure.message()));
+}
+
 void write_text(const std::string& path, const std::string& text) { write_aside(path, text.data(), text.size()); }
 
 }  // namespace ajar

@@ -2,10 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
-#include "ajar/core/error.h"
-
 namespace ajar {
 namespace {
 
@@ -46,11 +42,7 @@ void merge(Pyramid& pyramid, const Film& film, const std::vector<std::vector<Str
 }
 
 void write_pyramid(const Pyramid& pyramid, const Film& film, const std::string& folder) {
-  std::error_code failure;
-  std::filesystem::create_directories(folder, failure);
-  if (failure)
-    throw Error(
-        fmt::format("{}: cannot make this folder ({}); name one that can be written", folder, failure.message()));
+  make_folder(folder);
   for (const auto& [st, layer] : pyramid.layers) {
     const std::string base = fmt::format("{}/s{}t{}", folder, st.first, st.second);
     write_exr(base + ".exr", average(film, layer.weighted), {}, false);

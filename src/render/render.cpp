@@ -32,6 +32,9 @@ const Integrator& find_integrator(const std::string& name) {
 // Chunks traced between two merges: bounds the memory of splats and the time to the next look at the clock.
 constexpr uint32_t batch_chunks = 256;
 
+// Fewest, so that every thread finds work.
+constexpr uint32_t least_chunks = 16;
+
 struct Batch {
   std::vector<std::vector<Splat>> splats;
   std::vector<std::vector<Strategy>> strategies;
@@ -52,10 +55,11 @@ Sample make_sample(const Job& job, const Film& film, int x, int y) {
 
 void trace_pixel(const Job& job, Trace trace, Film& film, int x, int y, Scratch& scratch) {
   Sample sample = make_sample(job, film, x, y);
+  const size_t splats = scratch.splats->size();
   trace(job, sample, scratch);
   if (!accept(sample.value, sample, scratch)) sample.value = Rgb(0);
   ++scratch.counters.camera_paths;
-  scratch.counters.zero_paths += is_black(sample.value);
+  scratch.counters.zero_paths += is_black(sample.value) && scratch.splats->size() == splats;
   film.camera[sample.path] = sample.value * sample.filter;
 }
 
@@ -83,6 +87,20 @@ Job make_job(const Scene& scene, const Accel& accel, const RenderOptions& option
 // Whether the target is looked at after so many passes: even numbers with at most four significant bits. Looks thin out
 // as the error falls, so that few of them get the chance to be lucky, and are the same ones when a render is resumed.
 bool is_checked(uint32_t passes) { return passes >= 8 && passes % std::max(2u, std::bit_floor(passes) / 8) == 0; }
+
+// Chunks that the rest of a time budget suffices for, at the pace so far; few to begin with. How many are traced
+// between two merges changes no result.
+uint32_t affordable_chunks(const RenderOptions& options, const RenderState& state) {
+  if (options.seconds <= 0 && options.cpu_seconds <= 0) return batch_chunks;
+  const double done = double(state.film.passes) * chunk_count(state.film) + state.film.chunks;
+  double affordable = done > 0 ? batch_chunks : least_chunks;
+  const auto limit = [&](double budget, double used) {
+    if (budget > 0 && used > 0) affordable = std::min(affordable, (budget - used) / used * done);
+  };
+  limit(options.seconds, state.stats.seconds);
+  limit(options.cpu_seconds, state.stats.cpu_seconds);
+  return std::max(uint32_t(std::max(affordable, 0.0)), least_chunks);
+}
 
 void note_rejected(RenderStats& stats, const std::vector<uint64_t>& pixels, const Film& film, uint64_t seed) {
   for (const uint64_t p : pixels)
@@ -149,7 +167,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
            (options.cpu_seconds > 0 && stats.cpu_seconds >= options.cpu_seconds);
   };
   while (!out_of_budget()) {
-    const uint32_t from = film.chunks, count = std::min(batch_chunks, all - from);
+    const uint32_t from = film.chunks, count = std::min({batch_chunks, all - from, affordable_chunks(options, state)});
     batch.splats.resize(count);
     batch.strategies.resize(count);
     batch.rejected_at.resize(count);

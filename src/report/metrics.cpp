@@ -63,14 +63,14 @@ void require_comparable(const Picture& picture, const std::string& file) {
   }
 }
 
-Metrics compare(const Picture& image, const Picture& reference) {
+Metrics compare(const Picture& image, const Picture& reference, bool with_flip) {
   require_same_size(image, reference);
   require_comparable(image, "the image");
   require_comparable(reference, "the reference");
   Metrics metrics;
   pixel_metrics(rgb_planes(image), rgb_planes(reference), metrics);
   metrics.ssim = ssim(image, reference);
-  metrics.flip = mean_of(flip(image, reference));
+  if (with_flip) metrics.flip = mean_of(flip(image, reference));
   metrics.has_z = has_variance(image) || has_variance(reference);
   if (metrics.has_z) metrics.z = z_test(image, reference);
   return metrics;

@@ -99,4 +99,11 @@ void set_orthographic(Camera& c, const Mat4& to_world) {
   set_matrices(c, to_world);
 }
 
+void set_size(Camera& camera, int width, int height) {
+  camera.width = camera.crop_width = width;
+  camera.height = camera.crop_height = height;
+  camera.crop_x = camera.crop_y = 0;
+  camera.plane.y = camera.plane.x * float(height) / float(width);
+}
+
 }  // namespace ajar

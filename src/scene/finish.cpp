@@ -161,4 +161,10 @@ void finish(Scene& scene) {
   scene.light_choice = Distribution(weights);
 }
 
+uint64_t count_triangles(const Scene& scene) {
+  uint64_t n = 0;
+  for (const Mesh& m : scene.meshes) n += m.triangles.size();
+  return n;
+}
+
 }  // namespace ajar

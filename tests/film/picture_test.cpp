@@ -18,11 +18,13 @@
 #include "ajar/core/error.h"
 #include "ajar/core/sampler.h"
 #include "ajar/film/tone.h"
+#include "kit/files.h"
 
 namespace ajar {
 namespace {
 
 namespace fs = std::filesystem;
+using kit::error_of;
 
 /// An empty folder of its own for each test case, gone afterwards.
 struct PictureFile : testing::Test {
@@ -56,17 +58,6 @@ Picture noise(int width, int height, const std::vector<std::string>& names, doub
     picture.pixels.push_back(float((u.x - 0.5) * std::pow(10.0, (u.y - 0.5) * 2 * exponents)));
   }
   return picture;
-}
-
-/// What the call says when it throws Error; empty when it does not.
-template <typename Call>
-std::string error_of(const Call& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
 }
 
 TEST_F(PictureFile, FloatExrComesBackExactly) {

@@ -1,12 +1,18 @@
 // Enters: names of files that come with the sources, or that may lie beside them (scenes and images of other
-// renderers). Leaves: their paths; a test that needs what is not there says so and is skipped.
+// renderers). Leaves: their paths and bytes; a test that needs what is not there says so and is skipped. And what a
+// call says that fails.
 #pragma once
 
 #include <gtest/gtest.h>
 
+#include <concepts>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
+
+#include "ajar/core/error.h"
 
 namespace ajar::kit {
 
@@ -20,6 +26,22 @@ inline std::string shared_path(const std::string& name) {
   const char* scenes = std::getenv("AJAR_SHARED_SCENES");
   const std::filesystem::path home = scenes ? std::filesystem::path(scenes) / ".." : AJAR_SHARED_DIR;
   return (home / name).lexically_normal().string();
+}
+
+/// All bytes of a file; empty where there is none.
+inline std::string bytes_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// What the call says when it throws Error; empty when it does not.
+std::string error_of(const std::invocable auto& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
 }
 
 }  // namespace ajar::kit

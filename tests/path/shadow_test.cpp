@@ -47,7 +47,7 @@ TEST_P(Shadow, NothingShadowsItself) {
       Scene scene;
       add_diffuse(scene, Rgb(0.5f));
       const uint32_t shape = GetParam().make(scene, centre, size);
-      emit(scene, shape, Rgb(1));
+      add_area_light(scene, shape, Rgb(1));
       finish(scene);
       const Accel accel(scene);
       for (const float reach : {0.5f, 2.0f, 20.0f, 500.0f})

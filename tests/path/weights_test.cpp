@@ -271,7 +271,7 @@ Material of_kind(MaterialKind kind, float alpha = 0.2f) {
 
 Scene with_sphere(const Material& m) {
   Scene scene = stage();
-  add_sphere(scene, {0.1f, -0.3f, 0.2f}, 0.5f, add(scene, m));
+  add_sphere(scene, {0.1f, -0.3f, 0.2f}, 0.5f, add_material(scene, m));
   return finished(std::move(scene));
 }
 
@@ -279,9 +279,9 @@ Scene with_sphere(const Material& m) {
 Scene open(LightKind kind) {
   Scene scene;
   scene.filter = make_filter(FilterKind::box);
-  look(scene, {0, 0, 4.2f}, {0, 0, 0}, 36, 24, 24);
+  set_camera(scene, {0, 0, 4.2f}, {0, 0, 0}, 36, 24, 24);
   add_open_room(scene);
-  add_sphere(scene, {0, -0.5f, 0}, 0.5f, add(scene, of_kind(MaterialKind::dielectric)));
+  add_sphere(scene, {0, -0.5f, 0}, 0.5f, add_material(scene, of_kind(MaterialKind::dielectric)));
   const uint32_t id = add_light(scene, kind, Rgb(3, 2, 1));
   Light& light = scene.lights[id];
   light.position = {0.3f, 0.8f, 0.4f};
@@ -292,7 +292,7 @@ Scene open(LightKind kind) {
     std::vector<float> sky;
     for (int i = 0; i < 32 * 16; ++i)
       for (int c = 0; c < 3; ++c) sky.push_back(i == 70 ? 100 : 0.1f + float(i % 7));
-    const Slot image = add_texture(scene, 32, 16, sky);
+    const Slot image = add_image(scene, 32, 16, sky);
     scene.environments.push_back(make_environment(scene, scene.textures[image.texture].image, 1));
     light.environment = 0;
     light.to_world = Mat4(1);
@@ -319,9 +319,9 @@ TEST(Weights, Textured) {
   Scene scene = stage();
   std::vector<float> rgb;
   for (int i = 0; i < 16; ++i) rgb.insert(rgb.end(), {float(i), float(i % 4), 1});
-  scene.lights[0].radiance = add_texture(scene, 4, 4, rgb);
+  scene.lights[0].radiance = add_image(scene, 4, 4, rgb);
   scene.materials[scene.shapes[0].material] = of_kind(MaterialKind::roughconductor);
-  scene.materials[scene.shapes[0].material].alpha_u = add_texture(scene, 2, 1, {0.1f, 0.1f, 0.1f, 0.5f, 0.5f, 0.5f});
+  scene.materials[scene.shapes[0].material].alpha_u = add_image(scene, 2, 1, {0.1f, 0.1f, 0.1f, 0.5f, 0.5f, 0.5f});
   expect_oracle(finished(std::move(scene)));
 }
 
@@ -330,7 +330,7 @@ TEST(Weights, BentNormalsAndMasks) {
   Material mask = of_kind(MaterialKind::mask);
   mask.weight = 0.6f;
   mask.nested[0] = 0;
-  add_mesh(scene, globe({0, -0.3f, 0.2f}, 0.5f, 6, 0.4f), add(scene, mask));
+  add_mesh(scene, globe({0, -0.3f, 0.2f}, 0.5f, 6, 0.4f), add_material(scene, mask));
   expect_oracle(finished(std::move(scene)));
 }
 
@@ -340,8 +340,8 @@ TEST(Weights, TwoFacedMask) {
   Material mask = of_kind(MaterialKind::mask), faces = of_kind(MaterialKind::twosided);
   mask.weight = 0.6f;
   faces.nested[0] = add_diffuse(scene, Rgb(0.1f)), faces.nested[1] = add_diffuse(scene, Rgb(0.9f));
-  mask.nested[0] = add(scene, faces);
-  add_quad(scene, {-0.9f, -0.2f, 0.5f}, {1.8f, 0, 0}, {0, 0.2f, -1.3f}, add(scene, mask));
+  mask.nested[0] = add_material(scene, faces);
+  add_quad(scene, {-0.9f, -0.2f, 0.5f}, {1.8f, 0, 0}, {0, 0.2f, -1.3f}, add_material(scene, mask));
   expect_oracle(finished(std::move(scene)));
 }
 
@@ -349,7 +349,7 @@ TEST(Weights, ManyLights) {
   Scene scene = open(LightKind::constant);
   scene.lights[add_light(scene, LightKind::point, Rgb(1))].position = {0.5f, 0.5f, 0.5f};
   add_lamp(scene, 0.3f, Rgb(4));
-  emit(scene, add_sphere(scene, {0.6f, -0.2f, 0}, 0.1f, 0), Rgb(9));
+  add_area_light(scene, add_sphere(scene, {0.6f, -0.2f, 0}, 0.1f, 0), Rgb(9));
   add_light(scene, LightKind::directional, Rgb(1));
   expect_oracle(finished(std::move(scene)));
 }

@@ -44,13 +44,13 @@ Material rough(MaterialKind kind, Microfacet distribution, float alpha_u, float 
 uint32_t nest(Scene& scene, MaterialKind kind, uint32_t first, uint32_t second = none) {
   Material m = of_kind(kind);
   m.nested[0] = first, m.nested[1] = second;
-  return add(scene, m);
+  return add_material(scene, m);
 }
 
 // The usual room with a sphere of this material in it.
 Scene with_sphere(const Material& material, float radius = 0.45f) {
   Scene scene = stage();
-  add_sphere(scene, {0.15f, -0.35f, 0.1f}, radius, add(scene, material));
+  add_sphere(scene, {0.15f, -0.35f, 0.1f}, radius, add_material(scene, material));
   return finished(std::move(scene));
 }
 
@@ -62,9 +62,9 @@ Scene with_rough_sphere(MaterialKind kind, Microfacet distribution, float alpha_
 Scene open_stage() {
   Scene scene;
   scene.filter = make_filter(FilterKind::box);
-  look(scene, {0, 0.8f, 3.5f}, {0, -0.5f, 0}, 22, 24, 24);
+  set_camera(scene, {0, 0.8f, 3.5f}, {0, -0.5f, 0}, 22, 24, 24);
   add_open_room(scene);
-  const uint32_t glossy = add(scene, rough(MaterialKind::roughconductor, Microfacet::ggx, 0.3f, 0.3f));
+  const uint32_t glossy = add_material(scene, rough(MaterialKind::roughconductor, Microfacet::ggx, 0.3f, 0.3f));
   add_sphere(scene, {0, -0.7f, 0}, 0.3f, glossy);
   return scene;
 }
@@ -73,9 +73,9 @@ Scene open_stage() {
 Scene caustic(const Material& material, bool point) {
   Scene scene;
   scene.filter = make_filter(FilterKind::box);
-  look(scene, {0, -0.2f, 2}, {0, -1, 0.1f}, 24, 24, 24);
+  set_camera(scene, {0, -0.2f, 2}, {0, -1, 0.1f}, 24, 24, 24);
   add_open_room(scene);
-  add_sphere(scene, {0, 0.1f, 0}, 0.35f, add(scene, material));
+  add_sphere(scene, {0, 0.1f, 0}, 0.35f, add_material(scene, material));
   if (point)
     scene.lights[add_light(scene, LightKind::point, Rgb(3))].position = {0.1f, 0.9f, 0};
   else
@@ -105,7 +105,7 @@ std::vector<float> sky(int width, int height) {
 
 Scene with_envmap() {
   Scene scene = open_stage();
-  const Slot image = add_texture(scene, 16, 8, sky(16, 8));
+  const Slot image = add_image(scene, 16, 8, sky(16, 8));
   Light& light = scene.lights[add_light(scene, LightKind::envmap, Rgb(1))];
   light.to_world = glm::rotate(Mat4(1), 0.7f, glm::normalize(Vec3(0.2f, 1, 0.1f)));
   scene.environments.push_back(make_environment(scene, scene.textures[image.texture].image, 0.5f));
@@ -121,7 +121,7 @@ Scene with_many_lights() {
       glm::normalize(Vec3(-1, -2, -0.5f));
   scene.lights[add_light(scene, LightKind::point, Rgb(0, 0.5f, 1))].position = {-0.5f, 0.5f, 0.5f};
   add_lamp(scene, 0.2f, Rgb(5));
-  emit(scene, add_sphere(scene, {0.6f, -0.2f, 0}, 0.1f, add_diffuse(scene, Rgb(0.5f))), Rgb(4));
+  add_area_light(scene, add_sphere(scene, {0.6f, -0.2f, 0}, 0.1f, add_diffuse(scene, Rgb(0.5f))), Rgb(4));
   return finished(std::move(scene));
 }
 
@@ -131,7 +131,7 @@ Scene lit_by_shape(ShapeKind kind, const Mat4& to_world, bool flip = false) {
   scene.shapes.pop_back();
   const uint32_t shape = add_quadric(scene, kind, to_world, add_diffuse(scene, Rgb(0.3f)));
   scene.shapes[shape].flip = flip;
-  emit(scene, shape, Rgb(8, 7, 6));
+  add_area_light(scene, shape, Rgb(8, 7, 6));
   return finished(std::move(scene));
 }
 
@@ -150,7 +150,7 @@ Slot bumps(Scene& scene, float height) {
   std::vector<float> rgb;
   for (int i = 0; i < 64; ++i)
     for (int c = 0; c < 3; ++c) rgb.push_back(height * float((i * 37) % 11) / 11.0f);
-  return add_texture(scene, 8, 8, rgb);
+  return add_image(scene, 8, 8, rgb);
 }
 
 Scene with_textures() {
@@ -162,7 +162,7 @@ Scene with_textures() {
 
 Scene with_globe(float bend, const Material& material) {
   Scene scene = stage();
-  add_mesh(scene, globe({0.1f, -0.4f, 0}, 0.5f, 8, bend), add(scene, material));
+  add_mesh(scene, globe({0.1f, -0.4f, 0}, 0.5f, 8, bend), add_material(scene, material));
   return finished(std::move(scene));
 }
 
@@ -170,9 +170,9 @@ Scene with_bump_map(MaterialKind kind, uint32_t base_kind) {
   Scene scene = stage();
   Material base = base_kind == 0 ? Material{} : rough(MaterialKind::roughconductor, Microfacet::ggx, 0.3f, 0.3f);
   Material m = of_kind(kind);
-  m.nested[0] = add(scene, base);
+  m.nested[0] = add_material(scene, base);
   m.map = bumps(scene, kind == MaterialKind::bumpmap ? 0.6f : 1);
-  const uint32_t twosided = nest(scene, MaterialKind::twosided, add(scene, m));
+  const uint32_t twosided = nest(scene, MaterialKind::twosided, add_material(scene, m));
   add_mesh(scene, globe({-0.45f, -0.5f, 0}, 0.4f, 12), twosided);
   add_quad(scene, {0.1f, -0.9f, -0.3f}, {0.7f, 0.1f, 0.4f}, {0, 1, -0.2f}, twosided);
   return finished(std::move(scene));
@@ -182,7 +182,7 @@ Scene with_bump_map(MaterialKind kind, uint32_t base_kind) {
 Scene with_instances() {
   Scene scene = stage();
   scene.groups = 1;
-  const uint32_t glossy = add(scene, rough(MaterialKind::roughconductor, Microfacet::ggx, 0.25f, 0.5f));
+  const uint32_t glossy = add_material(scene, rough(MaterialKind::roughconductor, Microfacet::ggx, 0.25f, 0.5f));
   const uint32_t first = add_mesh(scene, globe({0, 0.2f, 0}, 0.5f, 8, 0.3f), glossy);
   const uint32_t second = add_sphere(scene, {0.3f, -0.5f, 0.2f}, 0.3f, add_diffuse(scene, {0.2f, 0.4f, 0.8f}));
   scene.shapes[first].group = scene.shapes[second].group = 0;
@@ -202,22 +202,22 @@ Scene with_masks() {
   mask.nested[0] = nest(scene, MaterialKind::twosided, add_diffuse(scene, {0.3f, 0.3f, 0.8f}),
                         add_diffuse(scene, {0.8f, 0.8f, 0.1f}));
   mask.weight = checker(scene, 0.8f, 0.1f);
-  add_quad(scene, {-0.7f, -0.9f, 0.3f}, {1.2f, 0, 0.1f}, {0, 1.1f, 0}, add(scene, mask));
+  add_quad(scene, {-0.7f, -0.9f, 0.3f}, {1.2f, 0, 0.1f}, {0, 1.1f, 0}, add_material(scene, mask));
   mask.weight = 0.4f;
-  add_mesh(scene, globe({0.4f, 0, -0.3f}, 0.4f, 6, 0.3f), add(scene, mask));
-  add_quad(scene, {-0.9f, 0.6f, -0.9f}, {1.8f, 0, 0}, {0, 0, 1}, add(scene, of_kind(MaterialKind::null)));
+  add_mesh(scene, globe({0.4f, 0, -0.3f}, 0.4f, 6, 0.3f), add_material(scene, mask));
+  add_quad(scene, {-0.9f, 0.6f, -0.9f}, {1.8f, 0, 0}, {0, 0, 1}, add_material(scene, of_kind(MaterialKind::null)));
   return finished(std::move(scene));
 }
 
 Scene with_blend(MaterialKind kind) {
   Scene scene = stage();
   const uint32_t diffuse = add_diffuse(scene, {0.7f, 0.4f, 0.1f});
-  const uint32_t glossy = add(scene, rough(MaterialKind::roughconductor, Microfacet::beckmann, 0.2f, 0.2f));
+  const uint32_t glossy = add_material(scene, rough(MaterialKind::roughconductor, Microfacet::beckmann, 0.2f, 0.2f));
   Material m = of_kind(kind);
   m.nested[0] = diffuse, m.nested[1] = glossy;
   m.weight = checker(scene, 0.9f, 0.2f);
   m.weights = {0.5f, 0.3f, 0, 0};
-  add_sphere(scene, {0.1f, -0.4f, 0}, 0.5f, nest(scene, MaterialKind::twosided, add(scene, m)));
+  add_sphere(scene, {0.1f, -0.4f, 0}, 0.5f, nest(scene, MaterialKind::twosided, add_material(scene, m)));
   return finished(std::move(scene));
 }
 
@@ -258,7 +258,7 @@ Scene with_clip_planes() {
 Scene with_corners() {
   Scene scene = stage();
   add_quad(scene, {-1, -1, -1}, {2, 0.02f, 0}, {0, 0.3f, 2}, scene.shapes[0].material);
-  emit(scene, add_sphere(scene, {-0.5f, -0.7f, 0.3f}, 0.25f, add_diffuse(scene, Rgb(0.5f))), Rgb(1));
+  add_area_light(scene, add_sphere(scene, {-0.5f, -0.7f, 0.3f}, 0.25f, add_diffuse(scene, Rgb(0.5f))), Rgb(1));
   return finished(std::move(scene));
 }
 
@@ -307,9 +307,9 @@ const Feature features[] = {
      [] {
        Scene scene;
        scene.filter = make_filter(FilterKind::box);
-       look(scene, {0, -0.2f, 2}, {0, -1, 0.1f}, 24, 24, 24);
+       set_camera(scene, {0, -0.2f, 2}, {0, -1, 0.1f}, 24, 24, 24);
        add_open_room(scene);
-       add_mesh(scene, globe({0, 0.1f, 0}, 0.4f, 8, 0.2f), add(scene, glass));
+       add_mesh(scene, globe({0, 0.1f, 0}, 0.4f, 8, 0.2f), add_material(scene, glass));
        add_lamp(scene, 0.5f, Rgb(8));
        return finished(std::move(scene));
      }},
@@ -339,7 +339,8 @@ const Feature features[] = {
     {"mesh_light",
      [] {
        Scene scene = stage();
-       emit(scene, add_mesh(scene, globe({0.3f, 0, 0}, 0.25f, 5, 0.2f), add_diffuse(scene, Rgb(0.5f))), Rgb(2, 3, 4));
+       add_area_light(scene, add_mesh(scene, globe({0.3f, 0, 0}, 0.25f, 5, 0.2f), add_diffuse(scene, Rgb(0.5f))),
+                      Rgb(2, 3, 4));
        return finished(std::move(scene));
      }},
     {"point",
@@ -362,7 +363,7 @@ const Feature features[] = {
     {"envmap_seen",
      [] {
        Scene scene = with_envmap();
-       look(scene, {0, 0.5f, 4.5f}, {0, 0.3f, 0}, 60, 24, 24);
+       set_camera(scene, {0, 0.5f, 4.5f}, {0, 0.3f, 0}, 60, 24, 24);
        return finished(std::move(scene));
      },
      "pb"},

@@ -29,7 +29,7 @@ enum class Oven { cube, sphere, mesh };
 Scene furnace(Oven oven, const Rgb& radiance, const Rgb& reflectance) {
   Scene scene;
   scene.filter = make_filter(FilterKind::box);
-  look(scene, {0.2f, 0.1f, 0.3f}, {0.4f, -0.2f, -0.5f}, 60, 12, 12);
+  set_camera(scene, {0.2f, 0.1f, 0.3f}, {0.4f, -0.2f, -0.5f}, 60, 12, 12);
   const uint32_t wall = add_diffuse(scene, reflectance);
   const Mat4 to_world = glm::rotate(glm::scale(Mat4(1), Vec3(1.5f)), 0.5f, Vec3(1, 2, 3));
   if (oven == Oven::sphere) scene.shapes[add_quadric(scene, ShapeKind::sphere, to_world, wall)].flip = true;
@@ -47,7 +47,7 @@ Scene furnace(Oven oven, const Rgb& radiance, const Rgb& reflectance) {
         corner[axis] = side;
         side < 0 ? add_quad(scene, corner, u, v, wall) : add_quad(scene, corner, v, u, wall);
       }
-  for (uint32_t i = 0; i < scene.shapes.size(); ++i) emit(scene, i, radiance);
+  for (uint32_t i = 0; i < scene.shapes.size(); ++i) add_area_light(scene, i, radiance);
   finish(scene);
   return scene;
 }
@@ -82,16 +82,16 @@ TEST(Furnace, InsideOfABlackEmissiveSphere) {
 TEST(Furnace, LosslessObjectsVanish) {
   Scene scene;
   scene.filter = make_filter(FilterKind::box);
-  look(scene, {0, 0, 5}, {0, 0, 0}, 40, 24, 24);
+  set_camera(scene, {0, 0, 5}, {0, 0, 0}, 40, 24, 24);
   Material glass, mirror, pane, nothing;
   glass.kind = MaterialKind::dielectric, mirror.kind = MaterialKind::conductor;
   pane.kind = MaterialKind::thindielectric, nothing.kind = MaterialKind::null;
   mirror.eta = Rgb(0), mirror.k = Rgb(1);
-  add_sphere(scene, {-0.6f, 0.6f, 0}, 0.5f, add(scene, glass));
+  add_sphere(scene, {-0.6f, 0.6f, 0}, 0.5f, add_material(scene, glass));
   add_mesh(scene, globe({0.6f, 0.6f, 0}, 0.5f, 6), add_diffuse(scene, Rgb(1)));
-  add_sphere(scene, {-0.6f, -0.6f, 0}, 0.5f, add(scene, mirror));
-  add_sphere(scene, {0.6f, -0.6f, 0}, 0.5f, add(scene, pane));
-  add_sphere(scene, {0, 0, 0.3f}, 0.3f, add(scene, nothing));
+  add_sphere(scene, {-0.6f, -0.6f, 0}, 0.5f, add_material(scene, mirror));
+  add_sphere(scene, {0.6f, -0.6f, 0}, 0.5f, add_material(scene, pane));
+  add_sphere(scene, {0, 0, 0.3f}, 0.3f, add_material(scene, nothing));
   scene.meshes[0].normals.clear();
   add_light(scene, LightKind::constant, Rgb(1, 2, 3));
   finish(scene);
@@ -111,12 +111,12 @@ double lambert(const std::vector<glm::dvec3>& polygon, const glm::dvec3& x, cons
 TEST(Lambert, TriangleOverAPlane) {
   Scene scene;
   scene.filter = make_filter(FilterKind::box);
-  look(scene, {0, 2, 3}, {0, 0, 0.2f}, 30, 24, 24);
+  set_camera(scene, {0, 2, 3}, {0, 0, 0.2f}, 30, 24, 24);
   add_quad(scene, {-9, 0, 9}, {18, 0, 0}, {0, 0, -18}, add_diffuse(scene, {0.8f, 0.4f, 0.2f}));
   Mesh mesh;
   mesh.positions = {{-0.5f, 1.1f, -2.0f}, {0.7f, 1.5f, -1.9f}, {0.1f, 1.0f, -0.4f}};
   mesh.triangles = {{0, 1, 2}};
-  emit(scene, add_mesh(scene, mesh, add_diffuse(scene, Rgb(0))), Rgb(5));
+  add_area_light(scene, add_mesh(scene, mesh, add_diffuse(scene, Rgb(0))), Rgb(5));
   finish(scene);
   Picture expected = filled(scene, Rgb(0));
   std::vector<glm::dvec3> polygon(mesh.positions.begin(), mesh.positions.end());
@@ -143,9 +143,9 @@ Material glass_of(float ior) {
 TEST(Refraction, RadianceOutOfGlass) {
   Scene scene;
   scene.filter = make_filter(FilterKind::box);
-  look(scene, {0, 0, 5}, {0, 0, 0}, 0.2f, 6, 6);
-  add_sphere(scene, Vec3(0), 1, add(scene, glass_of(1.5f)));
-  emit(scene, add_sphere(scene, Vec3(0), 0.5f, add_diffuse(scene, Rgb(0))), Rgb(9));
+  set_camera(scene, {0, 0, 5}, {0, 0, 0}, 0.2f, 6, 6);
+  add_sphere(scene, Vec3(0), 1, add_material(scene, glass_of(1.5f)));
+  add_area_light(scene, add_sphere(scene, Vec3(0), 0.5f, add_diffuse(scene, Rgb(0))), Rgb(9));
   finish(scene);
   const float value = 9 * (1 - fresnel_dielectric(1, 1.5f)) / (1.5f * 1.5f);
   for (const char* integrator : {"path", "bdpt"}) expect_everywhere(scene, integrator, -1, Rgb(value));
@@ -156,8 +156,8 @@ TEST(Refraction, RadianceOutOfGlass) {
 TEST(Refraction, PowerOutOfGlass) {
   Scene scene;
   scene.filter = make_filter(FilterKind::box);
-  look(scene, {0, 0, 1.2f}, {0, 0, 2}, 120, 12, 12);  // the ball is behind
-  add_sphere(scene, Vec3(0), 1, add(scene, glass_of(1.5f)));
+  set_camera(scene, {0, 0, 1.2f}, {0, 0, 2}, 120, 12, 12);  // the ball is behind
+  add_sphere(scene, Vec3(0), 1, add_material(scene, glass_of(1.5f)));
   scene.shapes[add_sphere(scene, Vec3(0), 2, add_diffuse(scene, Rgb(0.7f)))].flip = true;
   add_light(scene, LightKind::point, Rgb(11));
   finish(scene);
@@ -172,7 +172,7 @@ Scene handed(bool mirror, const Material& material) {
   Scene scene = stage();
   if (mirror) std::swap(scene.shapes[2].material, scene.shapes[3].material);
   scene.groups = 1;
-  scene.shapes[add_mesh(scene, globe({0.2f, -0.3f, 0.1f}, 0.5f, 8, 0.3f), add(scene, material))].group = 0;
+  scene.shapes[add_mesh(scene, globe({0.2f, -0.3f, 0.1f}, 0.5f, 8, 0.3f), add_material(scene, material))].group = 0;
   Instance instance;
   if (mirror) instance.to_world = instance.to_object = glm::scale(Mat4(1), Vec3(-1, 1, 1));
   scene.instances = {instance};

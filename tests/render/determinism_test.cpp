@@ -19,7 +19,7 @@ Scene strip(bool wide) {
   Scene scene = stage(40);
   Material glass;
   glass.kind = MaterialKind::dielectric;
-  add_sphere(scene, {0.3f, -0.5f, 0.3f}, 0.4f, add(scene, glass));
+  add_sphere(scene, {0.3f, -0.5f, 0.3f}, 0.4f, add_material(scene, glass));
   scene.filter = make_filter(FilterKind::mitchell);
   if (wide) {
     Camera& c = scene.camera;
@@ -118,6 +118,26 @@ TEST(Determinism, GoingOnIsTheStraightRun) {
     EXPECT_EQ(amid, 3);
     expect_same_bytes(straight, state);
   }
+}
+
+// Time budgets cut passes into other batches: first a few tiles, then what the rest of the time suffices for.
+TEST(Determinism, TimeDoesNotMatter) {
+  const Scene scene = strip(true);
+  const Accel accel(scene);
+  RenderOptions o = options_of("bdpt", 2);
+  o.techniques = true;
+  RenderState straight = start_render(scene, o), timed = straight;
+  render(scene, accel, o, straight, always);
+  o.cpu_seconds = 2e-3;
+  render(scene, accel, o, timed, always);
+  EXPECT_EQ(timed.film.passes, 0u);
+  EXPECT_EQ(timed.film.chunks, 16u) << "not a whole batch for a budget of a few tiles";
+  while (timed.film.passes < 2) {
+    o.cpu_seconds = 1.2 * timed.stats.cpu_seconds;
+    render(scene, accel, o, timed, [](const RenderState& s) { return s.film.passes < 2; });
+  }
+  EXPECT_EQ(timed.film.chunks, 0u);
+  expect_same_bytes(straight, timed);
 }
 
 TEST(Determinism, CheckpointAmidAPassIsTheStraightRun) {

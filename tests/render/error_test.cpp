@@ -54,8 +54,8 @@ Compared compared(const Scene& scene, const RenderOptions& options, int seeds) {
 // of it, and that pixels and neighbours stand for the true values.
 TEST(ErrorEstimate, IsTheErrorWhateverTheSampler) {
   Scene scene = stage();
-  look(scene, {0, 0, 3.5f}, {0, -0.4f, 0}, 30, 24,
-       24);  // the lamp, whose outline would be most of the error, is out of view
+  set_camera(scene, {0, 0, 3.5f}, {0, -0.4f, 0}, 30, 24,
+             24);  // the lamp, whose outline would be most of the error, is out of view
   finish(scene);
   struct Case {
     const char* integrator;

@@ -17,8 +17,8 @@ Scene furnished() {
   Scene scene = stage();
   Material glossy, glass;
   glossy.kind = MaterialKind::roughconductor, glass.kind = MaterialKind::dielectric;
-  add_sphere(scene, {0.4f, -0.6f, 0.2f}, 0.4f, add(scene, glossy));
-  add_sphere(scene, {-0.4f, -0.6f, 0.3f}, 0.35f, add(scene, glass));
+  add_sphere(scene, {0.4f, -0.6f, 0.2f}, 0.4f, add_material(scene, glossy));
+  add_sphere(scene, {-0.4f, -0.6f, 0.3f}, 0.35f, add_material(scene, glass));
   add_mesh(scene, globe({-0.3f, 0.2f, -0.4f}, 0.3f, 8, 0.2f), add_diffuse(scene, Rgb(0.7f)));
   return scene;
 }
@@ -29,7 +29,7 @@ Scene scaled(float size, const Vec3& shift = Vec3(0)) {
   for (Mesh& mesh : scene.meshes)
     for (Vec3& p : mesh.positions) p = Vec3(m * Vec4(p, 1));
   for (Shape& shape : scene.shapes) shape.to_world = m * shape.to_world, shape.to_object = glm::inverse(shape.to_world);
-  look(scene, Vec3(m * Vec4(0, 0, 4.2f, 1)), shift, 36, 24, 24);
+  set_camera(scene, Vec3(m * Vec4(0, 0, 4.2f, 1)), shift, 36, 24, 24);
   finish(scene);
   return scene;
 }
@@ -86,14 +86,14 @@ TEST(Extreme, SharpGlossAndTinyLights) {
     m.kind = MaterialKind::roughconductor;
     m.distribution = Microfacet::ggx;
     m.alpha_u = m.alpha_v = alpha;
-    const uint32_t gloss = add(scene, m);
+    const uint32_t gloss = add_material(scene, m);
     m.kind = MaterialKind::roughdielectric;
-    const uint32_t frosted = add(scene, m);
+    const uint32_t frosted = add_material(scene, m);
     add_quad(scene, {-0.9f, -0.9f, 0.5f}, {1.8f, 0, 0}, {0, 0.3f, -1.4f}, gloss);
     add_sphere(scene, {-0.4f, 0, 0.2f}, 0.3f, frosted);
     add_sphere(scene, {0.4f, 0, 0.2f}, 0.3f, gloss);
     const uint32_t spark = add_sphere(scene, {0.1f, 0.3f, 0.3f}, 1e-4f, scene.shapes[0].material);
-    emit(scene, spark, Rgb(1e7f));
+    add_area_light(scene, spark, Rgb(1e7f));
     finish(scene);
     for (const char* integrator : all) EXPECT_GT(sum_of(image_of(scene, integrator, 64)), 0) << integrator << alpha;
   }
@@ -104,7 +104,7 @@ TEST(Extreme, GrazingAndTouchingSurfaces) {
   const uint32_t grey = scene.shapes[0].material;
   for (int i = 0; i < 8; ++i)  // sheets upon the floor, ever closer, and through the spheres
     add_quad(scene, {-1, -1 + std::pow(0.1f, float(i)), 1}, {2, 0, 0}, {0, std::pow(0.1f, float(7 - i)), -2}, grey);
-  emit(scene, add_quad(scene, {-1, -0.99999f, 0.9f}, {2, 0, 0}, {0, 0, -0.01f}, grey), Rgb(50));
+  add_area_light(scene, add_quad(scene, {-1, -0.99999f, 0.9f}, {2, 0, 0}, {0, 0, -0.01f}, grey), Rgb(50));
   finish(scene);
   for (const char* integrator : all) EXPECT_GT(sum_of(image_of(scene, integrator, 64)), 0) << integrator;
 }
@@ -118,7 +118,7 @@ TEST(Extreme, LightsWithoutAreaGiveNothing) {
     Mesh flat;
     flat.positions = {{0, 0, 0}, {0.1f, 0.1f, 0}, {0.2f, 0.2f, 0}, {0, 0, 0}};
     flat.triangles = {{0, 1, 2}, {0, 3, 0}, {1, 1, 1}};
-    emit(scene, add_mesh(scene, flat, add_diffuse(scene, Rgb(0.5f))), Rgb(100));
+    add_area_light(scene, add_mesh(scene, flat, add_diffuse(scene, Rgb(0.5f))), Rgb(100));
     finish(scene), finish(plain);
     for (const char* integrator : all) {
       const double sum = sum_of(image_of(scene, integrator, 32)), expected = sum_of(image_of(plain, integrator, 32));
@@ -137,7 +137,7 @@ TEST(Extreme, NoLightNoShape) {
   unlit.lights[0].radiance = Rgb(0);
   finish(unlit);
   Scene empty;
-  look(empty, Vec3(0), Vec3(0, 0, 1), 40, 8, 8);
+  set_camera(empty, Vec3(0), Vec3(0, 0, 1), 40, 8, 8);
   finish(empty);
   Scene sky = empty;
   add_light(sky, LightKind::constant, Rgb(2));
@@ -159,11 +159,11 @@ TEST(Extreme, MirrorCorridor) {
   Material mirror;
   mirror.kind = MaterialKind::conductor;
   mirror.eta = Rgb(0), mirror.k = Rgb(1);
-  const uint32_t id = add(scene, mirror);
+  const uint32_t id = add_material(scene, mirror);
   scene.shapes[2].material = scene.shapes[3].material = id;
   add_quad(scene, {-1, -1, 4.5f}, {0, 2, 0}, {2, 0, 0}, id);  // behind the camera
   scene.shapes[1].material = id;
-  look(scene, {0.1f, -0.2f, 0.5f}, {1, 0, -0.1f}, 70, 24, 24);
+  set_camera(scene, {0.1f, -0.2f, 0.5f}, {1, 0, -0.1f}, 70, 24, 24);
   finish(scene);
   for (const char* integrator : {"path", "bdpt"}) {
     const Picture p = image_of(scene, integrator, 16);

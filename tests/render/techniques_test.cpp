@@ -13,13 +13,13 @@ using namespace kit;
 Scene panels(const Material& material, LightKind light) {
   Scene scene;
   scene.filter = make_filter(FilterKind::tent);
-  look(scene, {0.6f, 0.5f, 4.5f}, {0, -0.2f, 0}, 36, 18, 18);
-  const uint32_t grey = add_diffuse(scene, {0.8f, 0.7f, 0.6f}), id = add(scene, material);
+  set_camera(scene, {0.6f, 0.5f, 4.5f}, {0, -0.2f, 0}, 36, 18, 18);
+  const uint32_t grey = add_diffuse(scene, {0.8f, 0.7f, 0.6f}), id = add_material(scene, material);
   add_quad(scene, {-1.2f, -1, 1.2f}, {2.4f, 0, 0}, {0, 0, -2.4f}, id);
   add_quad(scene, {-1.2f, -0.9f, -1.8f}, {2.4f, 0, 0}, {0, 1.8f, 0}, grey);
   const uint32_t top = add_quad(scene, {-0.9f, 1.1f, -0.9f}, {1.8f, 0, 0}, {0, 0, 1.8f}, grey);
   if (light == LightKind::area)
-    emit(scene, top, Rgb(2, 3, 4));
+    add_area_light(scene, top, Rgb(2, 3, 4));
   else
     add_light(scene, light, Rgb(1));
   finish(scene);

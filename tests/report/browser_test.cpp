@@ -19,13 +19,6 @@ namespace {
 
 using nlohmann::json;
 
-std::string text_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
 /// Bytes as a PNG would hold them.
 json bytes_at(const Picture& picture, int x, int y, double exposure) {
   json bytes = json::array();
@@ -88,8 +81,8 @@ std::string open_page(const std::string& program, const std::filesystem::path& f
       ">log.txt 2>&1",
       folder.string(), program, window);
   const int status = std::system(command.c_str());
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << command << "\n" << text_of(folder / "log.txt");
-  return text_of(folder / "log.txt");
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << command << "\n" << kit::bytes_of(folder / "log.txt");
+  return kit::bytes_of(folder / "log.txt");
 }
 
 class Browser : public testing::TestWithParam<const char*> {};
@@ -102,7 +95,7 @@ TEST_P(Browser, PageWorks) {
   std::filesystem::remove_all(folder);
   const json results = test::make_synthetic(folder);
   write_report(results, folder);
-  std::string page = text_of(folder / "report.html");
+  std::string page = kit::bytes_of(folder / "report.html");
   const std::string expected = expectations(results, folder).dump();
   insert(page, "<title>",
          "<script>const errors = [];\n"
@@ -114,7 +107,7 @@ TEST_P(Browser, PageWorks) {
   for (const char c : expected) quoted += c == '<' ? std::string("\\u003c") : std::string(1, c);
   insert(page, "</body>",
          "<script type=\"module\">const expected = " + quoted + ";\n" +
-             text_of(kit::source_path("tests/report/selftest.js")) + "</script>\n");
+             kit::bytes_of(kit::source_path("tests/report/selftest.js")) + "</script>\n");
   write_text((folder / "driven.html").string(), page);
 
   const std::string log = open_page(program, folder, GetParam());

@@ -12,21 +12,13 @@
 
 #include "ajar/core/error.h"
 #include "ajar/film/tone.h"
+#include "kit/files.h"
 #include "pictures.h"
 
 namespace ajar {
 namespace {
 
-using test::constant, test::pattern;
-
-std::string error_of(const auto& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
-}
+using kit::error_of, test::constant, test::pattern;
 
 TEST(Metrics, TwoPixelsByHand) {
   const Picture image{2, 1, {"R", "G", "B"}, {0.5f, 1, 0, 2, 0.25f, 1}};

@@ -10,9 +10,9 @@
 
 #include <fstream>
 #include <regex>
-#include <sstream>
 
 #include "ajar/core/error.h"
+#include "kit/files.h"
 #include "pictures.h"
 #include "report/pack.h"
 #include "synthetic.h"
@@ -21,13 +21,6 @@ namespace ajar {
 namespace {
 
 using nlohmann::json;
-
-std::string text_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 /// What stands between the first such opening and the next closing.
 std::string between(const std::string& text, const std::string& open, const std::string& close) {
@@ -81,7 +74,7 @@ struct Page : testing::Test {
 
   std::string page() const {
     write_report(results, folder);
-    return text_of(folder / "report.html");
+    return kit::bytes_of(folder / "report.html");
   }
   std::string error() const {
     try {

@@ -40,6 +40,8 @@ inline int tiles_x(const Film& film) { return (film.width + tile - 1) / tile; }
 inline uint32_t chunk_count(const Film& film) {
   return uint32_t(tiles_x(film)) * uint32_t((film.height + tile - 1) / tile);
 }
+/// Samples per pixel, with the part of the pass at work.
+inline double spp_of(const Film& film) { return film.passes + double(film.chunks) / chunk_count(film); }
 
 Film make_film(const Camera& camera, const Filter& filter, bool splats);
 /// Adds the splats of consecutive chunks, in their order, filtered. The result does not depend on threads.

@@ -44,5 +44,7 @@ Picture select(const Picture& picture, const std::vector<std::string>& names);
 Picture crop(const Picture& picture, int x, int y, int width, int height);
 /// Writes text aside and renames. Throws Error.
 void write_text(const std::string& path, const std::string& text);
+/// Makes a folder and those above it; one that is there already will do. Throws Error.
+void make_folder(const std::string& path);
 
 }  // namespace ajar

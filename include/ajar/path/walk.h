@@ -13,7 +13,7 @@ namespace ajar {
 struct Counters {
   uint64_t camera_rays = 0, light_rays = 0, shadow_rays = 0;
   uint64_t camera_paths = 0, light_paths = 0;
-  uint64_t zero_paths = 0;  ///< camera paths whose pixel sample was black
+  uint64_t zero_paths = 0;  ///< samples that brought nothing: black, and no splat
 
   Counters& operator+=(const Counters& o);
 };

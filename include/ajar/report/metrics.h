@@ -35,7 +35,8 @@ struct Metrics {
 /// Image and reference have the same size, and channels R, G, B, or Y or a single one (grey). Channels Variance.R, .G,
 /// .B hold the variance of the pixel's value (not of one sample). Throws Error, also where a value is not finite or a
 /// variance is negative.
-Metrics compare(const Picture& image, const Picture& reference);
+/// FLIP costs more than all the rest; without it the figure is zero.
+Metrics compare(const Picture& image, const Picture& reference, bool with_flip = true);
 
 /// Mean structural similarity (Wang, Bovik, Sheikh and Simoncelli 2004, eq. 13: K1 = 0.01, K2 = 0.03, L = 1, Gaussian
 /// window of 11x11 pixels and 1.5 pixels standard deviation) of the tonemapped luminances, over the windows that lie in

@@ -51,5 +51,7 @@ float raster_factor(const Camera& camera, const Vec3& o, const Vec3& x);
 void set_perspective(Camera& camera, float fov_x_degrees, const Mat4& to_world);
 /// The same for an orthographic camera: the image is 2 wide in camera space, so to_world's scale gives its size.
 void set_orthographic(Camera& camera, const Mat4& to_world);
+/// Another size in pixels: the width of the view stays, its height follows, a crop window is dropped.
+void set_size(Camera& camera, int width, int height);
 
 }  // namespace ajar

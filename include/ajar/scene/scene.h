@@ -97,5 +97,7 @@ struct Scene {
 
 /// Computes what is derived (areas, bounds, light choice); call once after building or changing a scene.
 void finish(Scene& scene);
+/// Triangles of all meshes, each once however often it is placed.
+uint64_t count_triangles(const Scene& scene);
 
 }  // namespace ajar

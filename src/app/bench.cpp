@@ -1,0 +1,99 @@
+// ajar bench: error against run time, of the methods of a suite on its scenes.
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "ajar/render/render.h"
+#include "ajar/report/bench.h"
+#include "ajar/report/page.h"
+#include "commands.h"
+#include "progress.h"
+#include "stop.h"
+#include "version.h"
+
+namespace ajar {
+namespace {
+
+struct Arguments {
+  std::string suite, out, references;
+  bool quick = false, quiet = false;
+  int threads = 0;
+};
+
+/// One line on a terminal, rewritten in place; in a log one now and then.
+struct Line {
+  bool shown = true, terminal = isatty(STDERR_FILENO) != 0;
+  double next = 0;
+
+  void show(const BenchProgress& p) {
+    const double now = wall_seconds();
+    if (!shown || now < next) return;
+    next = now + (terminal ? 0.25 : 60);
+    std::string line = fmt::format("{:5.1f} %  {}", 100 * p.share, p.what);
+    if (p.left < infinity) line += fmt::format("  {} left", clock_text(p.left));
+    std::fprintf(stderr, terminal ? "\r%s\033[K" : "%s\n", line.c_str());
+    std::fflush(stderr);
+  }
+  void clear() const {
+    if (shown && terminal) std::fputs("\r\033[K", stderr);
+  }
+};
+
+std::string command_of(const Arguments& a) {
+  std::string command = fmt::format("ajar bench {} -o {}", a.suite, a.out);
+  if (a.quick) command += " --quick";
+  if (!a.references.empty()) command += " --references " + a.references;
+  if (a.threads > 0) command += fmt::format(" --threads {}", a.threads);
+  return command;
+}
+
+void run_bench_command(const Arguments& a) {
+  const Suite suite = load_suite(a.suite, a.quick);
+  for (const BenchScene& scene : suite.scenes)
+    if (!scene.missing.empty() && !a.quiet)
+      fmt::print(stderr, "ajar: note: scene {} is left out: {}\n", scene.name, scene.missing);
+  BenchOptions options;
+  options.folder = a.out;
+  options.references =
+      a.references.empty() ? suite.path.parent_path() / "references" : std::filesystem::path(a.references);
+  options.threads = a.threads;
+  options.command = command_of(a);
+  options.version = version;
+  Line line;
+  line.shown = !a.quiet;
+  options.watch = [&](const BenchProgress& p) {
+    line.show(p);
+    return !stop_asked();
+  };
+  catch_stop();
+  const nlohmann::ordered_json results = run_bench(suite, options);
+  line.clear();
+  if (results["interrupted"] && !a.quiet) fmt::print(stderr, "ajar: interrupted; the same command goes on from here\n");
+  fmt::print("{}", results_table(results));
+  write_report(nlohmann::json(results), options.folder);
+  if (!a.quiet) fmt::print("{}\n", (options.folder / "report.html").string());
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* c = app.add_subcommand("bench", "Measure error against run time of the methods of a suite");
+  c->add_option("suite", a->suite, "JSON file that names scenes, methods, seeds and a budget (docs/bench.md)")
+      ->required();
+  c->add_option("-o,--out", a->out, "folder for results; finished runs in it are kept and not run again")->required();
+  c->add_flag("--quick", a->quick, "the suite's smaller version of itself");
+  c->add_option("--references", a->references,
+                "folder of references that are made once (default: references beside the suite)");
+  c->add_option("--threads", a->threads, "threads (default: all)")->check(CLI::Range(1, 4096));
+  c->add_flag("-q,--quiet", a->quiet, "no progress, no notes");
+  c->callback([a] { run_bench_command(*a); });
+}
+
+}  // namespace ajar

@@ -1,0 +1,268 @@
+#include "ajar/report/bench.h"
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include "ajar/core/error.h"
+#include "element.h"
+#include "race.h"
+#include "results.h"
+
+namespace ajar {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+/// Everything about one scene that goes from step to step.
+struct Stand {
+  const BenchScene* scene = nullptr;
+  Json json;  ///< of results.json, without methods
+  std::optional<Reference> reference;
+  std::string reference_hash;
+};
+
+struct Bench {
+  const Suite& suite;
+  const BenchOptions& options;
+  std::vector<Stand> stands = {};
+  double start = 0, units = 0, done = 0;  ///< of runs; a unit is a budget
+  bool stopped = false;
+
+  fs::path run_path(const Stand& stand, const Method& method, uint64_t seed) const {
+    return options.folder / "runs" / stand.scene->name / fmt::format("{}-seed{}.json", method.name, seed);
+  }
+};
+
+/// A run of an earlier call; nothing where there is none. Throws Error for one that was held against another reference.
+std::optional<Json> find_run(const Bench& bench, const Stand& stand, const Method& method, uint64_t seed) {
+  const fs::path path = bench.run_path(stand, method, seed);
+  if (!fs::exists(path)) return {};
+  Json file = read_json(path);
+  if (!file.is_object() || !file.contains("run") || !file.contains("reference"))
+    throw Error(fmt::format("{}: is no run of a bench; delete it", path.string()));
+  if (file["reference"] != stand.reference_hash)
+    throw Error(fmt::format("{}: was measured against another reference; name another folder with -o, or delete {}",
+                            path.string(), path.parent_path().string()));
+  return file["run"];
+}
+
+void write_image(const Bench& bench, const Stand& stand, const std::string& name, const Picture& image) {
+  const fs::path folder = bench.options.folder / "images" / stand.scene->name;
+  make_folder(folder.string());
+  write_exr((folder / (name + ".exr")).string(), image, {{"ajar:version", bench.options.version}}, false);
+}
+
+/// Follows a racer, with the share of all that is to be done; false to stop.
+bool watch(Bench& bench, const Stand& stand, const Racer& racer, double done) {
+  if (!bench.options.watch) return true;
+  const double left = done > 0 ? (wall_seconds() - bench.start) / done * (bench.units - done) : infinity;
+  const std::string what = fmt::format("{} seed {} {}", stand.scene->name, racer.options.seed, racer.method->name);
+  bench.stopped = !bench.options.watch({what, done / bench.units, left});
+  return !bench.stopped;
+}
+
+void write_runs(const Bench& bench, const Stand& stand, const std::vector<Racer>& racers) {
+  for (const Racer& racer : racers) {
+    const uint64_t seed = racer.options.seed;
+    if (seed == bench.suite.seeds[0]) write_image(bench, stand, racer.method->name, develop(racer.state.film));
+    const fs::path path = bench.run_path(stand, *racer.method, seed);
+    make_folder(path.parent_path().string());
+    write_text(path.string(), Json{{"reference", stand.reference_hash}, {"run", run_json(racer)}}.dump(1) + "\n");
+  }
+}
+
+/// One seed of one scene: the methods that have no run yet.
+void run_seed(Bench& bench, const Stand& stand, const LoadedScene& loaded, size_t seed_index) {
+  const Suite& suite = bench.suite;
+  std::vector<Racer> racers;
+  for (const Method& method : suite.methods)
+    if (const uint64_t seed = suite.seeds[seed_index]; !find_run(bench, stand, method, seed))
+      racers.push_back(make_racer(method, *stand.scene, loaded, seed, bench.options.threads));
+  if (racers.empty()) return;
+  const auto follow = [&](const Racer& at_work) {
+    double done = bench.done;
+    for (const Racer& r : racers) done += std::min(share_done(suite.budget, r.state), 1.0);
+    return watch(bench, stand, at_work, done);
+  };
+  if (!race(loaded, suite.budget, stand.reference->image, seed_index, racers, follow)) return;
+  bench.done += double(racers.size());
+  write_runs(bench, stand, racers);
+}
+
+/// Images of the single strategies, of renders made for them alone, since keeping them takes time: a tenth of the
+/// budget.
+void make_techniques(Bench& bench, const Stand& stand, const LoadedScene& loaded) {
+  const Budget& all = bench.suite.budget;
+  const double amount = (all.cpu_seconds + all.seconds + all.spp) / 10;
+  for (const Method& method : bench.suite.methods) {
+    const fs::path folder = bench.options.folder / "techniques" / stand.scene->name / method.name;
+    if (fs::exists(folder) || bench.stopped) continue;
+    Racer racer = make_racer(method, *stand.scene, loaded, bench.suite.seeds[0], bench.options.threads);
+    racer.options = with_budget(racer.options, with_amount(all, all.spp > 0 ? std::max(amount, 1.0) : amount));
+    racer.options.techniques = true;
+    render(*loaded.scene, *loaded.accel, racer.options, racer.state,
+           [&](const RenderState&) { return watch(bench, stand, racer, bench.done); });
+    if (bench.stopped || racer.state.pyramid.layers.empty()) continue;
+    const fs::path aside = folder.string() + ".tmp";
+    make_folder(aside.string());
+    write_pyramid(racer.state.pyramid, racer.state.film, aside.string());
+    std::error_code error;
+    fs::rename(aside, folder, error);
+    if (error) throw Error(fmt::format("{}: cannot be renamed ({})", aside.string(), error.message()));
+  }
+}
+
+Json techniques_json(const Bench& bench, const Stand& stand, const Method& method) {
+  const fs::path relative = fs::path("techniques") / stand.scene->name / method.name;
+  std::error_code none_such;
+  std::set<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(bench.options.folder / relative, none_such))
+    files.insert(entry.path().filename());
+  Json list = Json::array();
+  for (const fs::path& file : files) {
+    int s = 0, t = 0;
+    const std::string stem = file.stem().string();
+    if (stem.ends_with("-raw") || std::sscanf(stem.c_str(), "s%dt%d", &s, &t) != 2) continue;
+    list.push_back({{"s", s},
+                    {"t", t},
+                    {"weighted", (relative / file).string()},
+                    {"raw", (relative / (stem + "-raw.exr")).string()}});
+  }
+  return list;
+}
+
+Json method_json(const Bench& bench, const Stand& stand, const Method& method) {
+  Json runs = Json::array();
+  for (const uint64_t seed : bench.suite.seeds)
+    if (auto run = find_run(bench, stand, method, seed)) runs.push_back(std::move(*run));
+  const fs::path image = fs::path("images") / stand.scene->name / (method.name + ".exr");
+  return {{"name", method.name},
+          {"options", options_json(method.options)},
+          {"image", fs::exists(bench.options.folder / image) ? Json(image.string()) : Json(nullptr)},
+          {"techniques", techniques_json(bench, stand, method)},
+          {"fields", Json::array()},
+          {"runs", runs}};
+}
+
+Json scene_json(const Bench& bench, const Stand& stand) {
+  Json json = stand.json;
+  json["methods"] = Json::array();
+  if (!stand.reference) return json;
+  for (const Method& method : bench.suite.methods) json["methods"].push_back(method_json(bench, stand, method));
+  Json baseline_runs;
+  for (const Json& method : json["methods"])
+    if (method["name"] == bench.suite.baseline) baseline_runs = method["runs"];
+  for (Json& method : json["methods"])
+    summarise(method, baseline_runs, method["name"] == bench.suite.baseline, bench.suite.budget);
+  return json;
+}
+
+Json results_json(const Bench& bench) {
+  const Suite& suite = bench.suite;
+  Json json = {{"format", 1},
+               {"version", bench.options.version},
+               {"title", suite.title},
+               {"date", date_text()},
+               {"machine", machine_json(bench.options.threads)},
+               {"command", bench.options.command},
+               {"quick", suite.quick},
+               {"interrupted", bench.stopped},
+               {"budget", to_json(suite.budget)},
+               {"seeds", suite.seeds},
+               {"baseline", suite.baseline},
+               {"scenes", Json::array()}};
+  for (const Stand& stand : bench.stands) json["scenes"].push_back(scene_json(bench, stand));
+  return json;
+}
+
+Stand make_stand(const Bench& bench, const BenchScene& scene) {
+  Stand stand;
+  stand.scene = &scene;
+  stand.json = {{"name", scene.name}, {"file", scene.file}, {"defines", scene.defines}};
+  for (const char* key : {"width", "height", "max_depth", "triangles", "load_seconds", "build_seconds"})
+    stand.json[key] = nullptr;
+  stand.json["max_depth"] = scene.max_depth;
+  stand.json["reference"] = nullptr;
+  stand.json["skipped"] = scene.missing.empty() ? Json(nullptr) : Json(scene.missing);
+  if (!scene.missing.empty()) return stand;
+  const LoadedScene loaded = load(bench.suite, scene);
+  const Camera& camera = loaded.scene->camera;
+  stand.json["width"] = camera.crop_width;
+  stand.json["height"] = camera.crop_height;
+  stand.json["triangles"] = count_triangles(*loaded.scene);
+  stand.reference = find_reference(bench.suite, scene, *loaded.scene, bench.options);
+  return stand;
+}
+
+void set_reference(const Bench& bench, Stand& stand) {
+  const Reference& r = *stand.reference;
+  stand.reference_hash =
+      hash_of({reinterpret_cast<const char*>(r.image.pixels.data()), r.image.pixels.size() * sizeof r.image.pixels[0]});
+  write_image(bench, stand, "reference", r.image);
+  stand.json["reference"] = {{"image", fmt::format("images/{}/reference.exr", stand.scene->name)},
+                             {"relmse", r.relmse ? Json(*r.relmse) : Json(nullptr)},
+                             {"made_by", r.made_by}};
+  for (const Method& method : bench.suite.methods)
+    for (const uint64_t seed : bench.suite.seeds) find_run(bench, stand, method, seed);
+}
+
+/// The folder is this suite's from now on.
+void claim_folder(const Bench& bench) {
+  const fs::path path = bench.options.folder / "suite.json";
+  Json key = to_json(bench.suite);
+  key["version"] = bench.options.version;
+  if (fs::exists(path)) {
+    if (read_json(path) != key)
+      throw Error(fmt::format("{}: holds runs of another suite than {} asks for{}; name another folder with -o",
+                              bench.options.folder.string(), bench.suite.path.string(),
+                              bench.suite.quick ? " with --quick" : ""));
+    return;
+  }
+  make_folder(bench.options.folder.string());
+  write_text(path.string(), key.dump(1) + "\n");
+}
+
+void make_references(Bench& bench) {
+  for (Stand& stand : bench.stands) {
+    if (!stand.scene->missing.empty() || bench.stopped) continue;
+    if (!stand.reference) {
+      LoadedScene loaded = load(bench.suite, *stand.scene);
+      build(loaded);
+      stand.reference = make_reference(bench.suite, *stand.scene, loaded, bench.options);
+      bench.stopped = !stand.reference;
+    }
+    if (stand.reference) set_reference(bench, stand);
+  }
+}
+
+void run_scene(Bench& bench, Stand& stand) {
+  LoadedScene loaded = load(bench.suite, *stand.scene);
+  build(loaded);
+  stand.json["load_seconds"] = loaded.load_seconds;
+  stand.json["build_seconds"] = loaded.build_seconds;
+  for (size_t i = 0; i < bench.suite.seeds.size() && !bench.stopped; ++i) run_seed(bench, stand, loaded, i);
+  if (bench.suite.techniques && !bench.stopped) make_techniques(bench, stand, loaded);
+}
+
+}  // namespace
+
+Json run_bench(const Suite& suite, const BenchOptions& options) {
+  Bench bench{suite, options};
+  for (const BenchScene& scene : suite.scenes) bench.stands.push_back(make_stand(bench, scene));
+  claim_folder(bench);
+  make_references(bench);
+  for (const Stand& stand : bench.stands)
+    for (const Method& method : suite.methods)
+      for (const uint64_t seed : suite.seeds) bench.units += stand.reference && !find_run(bench, stand, method, seed);
+  bench.start = wall_seconds();
+  for (Stand& stand : bench.stands)
+    if (stand.reference && !bench.stopped) run_scene(bench, stand);
+  const Json results = results_json(bench);
+  write_text((options.folder / "results.json").string(), results.dump(1) + "\n");
+  write_text((options.folder / "results.csv").string(), results_csv(results));
+  return results;
+}
+
+}  // namespace ajar

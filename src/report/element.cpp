@@ -1,0 +1,115 @@
+#include "element.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <fstream>
+#include <set>
+
+#include "ajar/core/error.h"
+
+namespace ajar {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string shown(const Json& value) {
+  const std::string whole = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return whole.size() <= 40 ? whole : whole.substr(0, 37) + "...";
+}
+
+}  // namespace
+
+Json read_json(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::error_code none_such;
+  if (!in || std::filesystem::is_directory(path, none_such))
+    throw Error(fmt::format("{}: cannot be read; is it a file, and there?", path.string()));
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  std::vector<std::set<std::string>> keys;
+  const auto watch = [&](int, Json::parse_event_t event, Json& parsed) {
+    if (event == Json::parse_event_t::object_start) keys.emplace_back();
+    if (event == Json::parse_event_t::object_end) keys.pop_back();
+    if (event == Json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
+      throw Error(fmt::format("{}: key {} comes twice in one object; keep one", path.string(), shown(parsed)));
+    return true;
+  };
+  try {
+    return Json::parse(bytes, watch);
+  } catch (const Json::parse_error& error) {
+    const std::string before = bytes.substr(0, std::min(error.byte > 0 ? error.byte - 1 : 0, bytes.size()));
+    const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+    const size_t column = before.size() - (before.rfind('\n') == std::string::npos ? 0 : before.rfind('\n') + 1) + 1;
+    throw Error(fmt::format("{}: line {}, column {}: not JSON here; look for a missing comma, quote or bracket",
+                            path.string(), line, column));
+  }
+}
+
+void fail(const Element& e, const std::string& what) {
+  throw Error(e.place.empty() ? fmt::format("{}: {}", e.file, what) : fmt::format("{}: {}: {}", e.file, e.place, what));
+}
+
+void require_keys(const Element& e, const std::vector<std::string>& known) {
+  if (!e.value->is_object()) fail(e, fmt::format("is {}; write an object {{...}}", shown(*e.value)));
+  for (const auto& [key, value] : e.value->items())
+    if (std::find(known.begin(), known.end(), key) == known.end())
+      fail(e, fmt::format("unknown key \"{}\"; known are {}", key, fmt::join(known, ", ")));
+}
+
+std::optional<Element> find(const Element& e, const std::string& key) {
+  const auto at = e.value->find(key);
+  if (at == e.value->end()) return {};
+  return Element{&*at, e.file, e.place.empty() ? key : e.place + "." + key};
+}
+
+Element get(const Element& e, const std::string& key, const std::string& cure) {
+  const auto found = find(e, key);
+  if (!found) fail(e, fmt::format("\"{}\" is missing; {}", key, cure));
+  return *found;
+}
+
+std::vector<Element> items(const Element& e, const std::string& cure) {
+  if (!e.value->is_array() || e.value->empty()) fail(e, fmt::format("is {}; {}", shown(*e.value), cure));
+  std::vector<Element> list;
+  for (size_t i = 0; i < e.value->size(); ++i) {
+    const Json& item = (*e.value)[i];
+    const bool named = item.is_object() && item.contains("name") && item["name"].is_string();
+    list.push_back({&item, e.file,
+                    named ? fmt::format("{} \"{}\"", e.place, item["name"].get<std::string>())
+                          : fmt::format("{}[{}]", e.place, i)});
+  }
+  return list;
+}
+
+std::string text(const Element& e) {
+  if (!e.value->is_string() || e.value->get<std::string>().empty())
+    fail(e, fmt::format("is {}; write a text in quotes", shown(*e.value)));
+  return e.value->get<std::string>();
+}
+
+bool flag(const Element& e) {
+  if (!e.value->is_boolean()) fail(e, fmt::format("is {}; write true or false", shown(*e.value)));
+  return e.value->get<bool>();
+}
+
+double number(const Element& e, double least, double most) {
+  if (!e.value->is_number() || !(e.value->get<double>() >= least && e.value->get<double>() <= most))
+    fail(e, fmt::format("is {}; write a number from {} to {}", shown(*e.value), least, most));
+  return e.value->get<double>();
+}
+
+int64_t integer(const Element& e, int64_t least, int64_t most) {
+  const double whole = number(e, double(least), double(most));
+  if (whole != std::floor(whole)) fail(e, fmt::format("is {}; write a whole number", shown(*e.value)));
+  return int64_t(whole);
+}
+
+size_t choice(const Element& e, const std::vector<std::string>& words) {
+  const std::string word = text(e);
+  const auto at = std::find(words.begin(), words.end(), word);
+  if (at == words.end()) fail(e, fmt::format("\"{}\" is unknown; known are {}", word, fmt::join(words, ", ")));
+  return size_t(at - words.begin());
+}
+
+}  // namespace ajar

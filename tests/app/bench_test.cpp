@@ -1,0 +1,91 @@
+// ajar bench, as a user calls it.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "ajar/core/error.h"
+#include "app/commands.h"
+#include "kit/files.h"
+
+namespace ajar {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct BenchCommand : testing::Test {
+  fs::path folder;
+  std::string suite, out;
+
+  void SetUp() override {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder = fs::path(testing::TempDir()) / ("ajar command " + std::string(info->name()) + std::to_string(::getpid()));
+    fs::create_directories(folder);
+    suite = (folder / "s.json").string();
+    out = (folder / "out").string();
+    nlohmann::json json = nlohmann::json::parse(R"({
+      "title": "t", "seeds": 2, "budget": {"spp": 2}, "baseline": "b", "methods": [{"name": "b", "integrator": "path"}],
+      "scenes": [{"name": "s", "size": [8, 8], "max_depth": 2, "reference":
+                  {"made_by": [{"integrator": "bdpt", "spp": 96}, {"integrator": "path", "spp": 96}]}}],
+      "quick": {"seeds": 1}})");
+    json["scenes"][0]["file"] = kit::source_path("scenes/box/box.xml");
+    std::ofstream(suite) << json.dump();
+  }
+  void TearDown() override { fs::remove_all(folder); }
+
+  /// Standard output of a run; throws what the command throws.
+  static std::string run(std::vector<std::string> arguments) {
+    CLI::App app;
+    add_bench(app);
+    arguments.insert(arguments.begin(), "bench");
+    std::reverse(arguments.begin(), arguments.end());
+    testing::internal::CaptureStdout();
+    testing::internal::CaptureStderr();
+    try {
+      app.parse(arguments);
+    } catch (...) {
+      testing::internal::GetCapturedStdout();
+      testing::internal::GetCapturedStderr();
+      throw;
+    }
+    testing::internal::GetCapturedStderr();
+    return testing::internal::GetCapturedStdout();
+  }
+  nlohmann::json results() const { return nlohmann::json::parse(std::ifstream(out + "/results.json")); }
+};
+
+TEST_F(BenchCommand, WritesResultsAndPrintsATable) {
+  const std::string table = run({suite, "-o", out, "--threads", "1"});
+  EXPECT_NE(table.find("baseline"), std::string::npos);
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 4) << table;
+  EXPECT_TRUE(table.ends_with(out + "/report.html\n")) << table;
+  EXPECT_TRUE(fs::exists(out + "/report.html"));
+  const auto json = results();
+  EXPECT_EQ(json["command"], "ajar bench " + suite + " -o " + out + " --threads 1");
+  EXPECT_EQ(json["machine"]["threads"], 1);
+  EXPECT_EQ(json["quick"], false);
+  EXPECT_EQ(json["seeds"].size(), 2u);
+  EXPECT_TRUE(fs::exists(folder / "references" / "s-8x8-depth2.exr")) << "beside the suite";
+}
+
+TEST_F(BenchCommand, QuickAndReferences) {
+  run({suite, "-o", out, "--quick", "--references", (folder / "elsewhere").string()});
+  EXPECT_EQ(results()["quick"], true);
+  EXPECT_EQ(results()["seeds"].size(), 1u);
+  EXPECT_TRUE(fs::exists(folder / "elsewhere" / "s-8x8-depth2.exr"));
+  EXPECT_THROW(run({suite, "-o", out}), Error) << "the folder holds the quick version's runs";
+}
+
+TEST_F(BenchCommand, ErrorsComeBeforeAnythingIsWritten) {
+  std::ofstream(suite) << R"({"title": "t"})";
+  EXPECT_THROW(run({suite, "-o", out}), Error);
+  EXPECT_FALSE(fs::exists(out));
+  EXPECT_THROW(run({suite}), CLI::ParseError);
+}
+
+}  // namespace
+}  // namespace ajar
