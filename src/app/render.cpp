@@ -12,7 +12,7 @@
 
 #include "ajar/core/error.h"
 #include "ajar/report/metrics.h"
-#include "ajar/scene/load.h"
+#include "arguments.h"
 #include "commands.h"
 #include "progress.h"
 #include "stop.h"
@@ -23,7 +23,8 @@ namespace {
 
 struct Arguments {
   std::string scene, out, size, time, cpu_time, heuristic = "power", sampler = "sobol", log, reference, checkpoint,
-                                                resume, techniques, integrator;
+                                                resume, techniques, integrator, save_fields, load_fields,
+                                                guide = "both", field_memory;
   std::optional<std::string> noise;
   std::vector<std::string> defines, features;
   int spp = 0, max_depth = std::numeric_limits<int>::min(), threads = 0, roulette_depth = 5;
@@ -57,22 +58,22 @@ double parse_noise(const std::string& text) {
   return value;
 }
 
-void set_size(Camera& camera, const std::string& text) {
-  int w = 0, h = 0, end = 0;
-  if (std::sscanf(text.c_str(), "%dx%d%n", &w, &h, &end) != 2 || size_t(end) != text.size() || w < 1 || h < 1 ||
-      w > 65536 || h > 65536)
-    throw Error(fmt::format("--size {}: write WIDTHxHEIGHT, each 1 to 65536", text));
-  set_size(camera, w, h);
-}
-
-LoadOptions load_options(const Arguments& a) {
-  LoadOptions o;
-  o.lenient = a.lenient;
-  for (const std::string& d : a.defines) {
-    const size_t equals = d.find('=');
-    if (equals == 0 || equals == std::string::npos) throw Error(fmt::format("-D {}: write -D name=value", d));
-    o.defines[d.substr(0, equals)] = d.substr(equals + 1);
-  }
+LearnOptions learn_options(const Arguments& a, const std::string& integrator) {
+  const std::pair<const char*, bool> asked[] = {{"--save-fields", !a.save_fields.empty()},
+                                                {"--load-fields", !a.load_fields.empty()},
+                                                {"--guide", a.guide != "both"},
+                                                {"--field-memory", !a.field_memory.empty()}};
+  if (!is_guided(integrator))
+    for (const auto& [option, given] : asked)
+      if (given)
+        throw Error(
+            fmt::format("{}: the integrator {} learns no fields; add --integrator guided-bdpt", option, integrator));
+  if (!a.load_fields.empty() && !a.resume.empty())
+    throw Error("--load-fields: a checkpoint brings its own fields; leave out either this or --resume");
+  if (!a.save_fields.empty()) check_file(a.save_fields);
+  LearnOptions o;
+  o.guided = a.guide == "camera" ? Guided::camera : a.guide == "light" ? Guided::light : Guided::both;
+  if (!a.field_memory.empty()) o.memory = parse_bytes("--field-memory", a.field_memory);
   return o;
 }
 
@@ -107,6 +108,7 @@ RenderOptions render_options(const Arguments& a, Scene& scene) {
   o.heuristic = a.heuristic == "balance" ? Heuristic::balance : Heuristic::power;
   o.sampler = a.sampler == "independent" ? SamplerKind::independent : SamplerKind::sobol;
   o.techniques = !a.techniques.empty();
+  o.learn = learn_options(a, o.integrator);
   return o;
 }
 
@@ -139,13 +141,6 @@ Log open_log(const Arguments& a, const Film& film) {
   log.file.open(a.log);
   if (!log.file) throw Error(a.log + ": cannot write the log; is its folder there?");
   return log;
-}
-
-// Fails before the render rather than after it.
-void check_writable(const std::string& path) {
-  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
-  if (!std::filesystem::is_directory(folder))
-    throw Error(fmt::format("{}: no such folder; make it first", folder.string()));
 }
 
 Picture append(Picture a, const Picture& b) {
@@ -204,10 +199,11 @@ void run_render(Arguments a) {
   const double wall0 = wall_seconds(), cpu0 = process_cpu_seconds();
   if (a.out.empty()) a.out = std::filesystem::path(a.scene).stem().string() + ".exr";
   check_writable(a.out);
-  Scene scene = load_scene(a.scene, load_options(a));
+  Scene scene = load_scene(a.scene, load_options(a.defines, a.lenient));
   if (!a.size.empty()) set_size(scene.camera, a.size);
   Run run;
   run.scene_path = a.scene, run.out_path = a.out, run.defines = a.defines;
+  run.load_fields = a.load_fields, run.save_fields = a.save_fields;
   run.options = render_options(a, scene);
   for (const std::string& n : scene.notes)
     if (!a.quiet) fmt::print(stderr, "ajar: note: {}\n", n);
@@ -222,6 +218,8 @@ void run_render(Arguments a) {
   RenderState state = start_render(scene, run.options);
   const std::string key = checkpoint_key(run, state.film);
   if (!a.resume.empty()) load_checkpoint(a.resume, key, state);
+  if (!a.load_fields.empty())
+    go_on_from(load_fields(a.load_fields, scene_key(scene)), run.options.learn, state.learning, state.film);
   Log log = open_log(a, state.film);
   Progress progress = make_progress(a.quiet);
   double saved = state.stats.seconds;
@@ -243,6 +241,7 @@ void run_render(Arguments a) {
   log.write(state, true);
   if (run.interrupted && !a.quiet) fmt::print(stderr, "ajar: interrupted; writing what is there\n");
   if (!a.checkpoint.empty()) save_checkpoint(a.checkpoint, key, state);
+  if (!a.save_fields.empty()) save_fields(a.save_fields, stored_fields(scene, state.learning, state.film));
   write_outputs(a, scene, accel, run, state);
   warn(state);
 }
@@ -256,7 +255,7 @@ void add_render(CLI::App& app) {
   c->add_option("-o,--out", a->out,
                 "image to write: .exr, or .png for a tonemapped one (default: the scene's name, here)");
   c->add_flag("--png", a->png, "write a tonemapped PNG beside the EXR");
-  c->add_option("--integrator", a->integrator, "path, bdpt or light (default: the scene's, else bdpt)");
+  c->add_option("--integrator", a->integrator, "path, bdpt, light or guided-bdpt (default: the scene's, else bdpt)");
   c->add_option("--spp", a->spp, "samples per pixel")->check(CLI::Range(1, 1 << 30));
   c->add_option("--time", a->time, "wall time to render: 90s, 5m, 1h");
   c->add_option("--cpu-time", a->cpu_time, "CPU time of all threads to render");
@@ -281,6 +280,11 @@ void add_render(CLI::App& app) {
   c->add_option("--techniques", a->techniques, "folder for an image of every strategy (s, t), weighted and raw");
   c->add_option("--checkpoint", a->checkpoint, "file to save the state to, every minute and at the end");
   c->add_option("--resume", a->resume, "checkpoint to go on from");
+  c->add_option("--guide", a->guide, "which subpaths the learned fields guide: both, camera or light")
+      ->check(CLI::IsMember({"both", "camera", "light"}));
+  c->add_option("--field-memory", a->field_memory, "memory that learned fields may take: 512K, 8M (default), 1G");
+  c->add_option("--save-fields", a->save_fields, "file to save the learned fields to");
+  c->add_option("--load-fields", a->load_fields, "fields to start from, saved from a render of the same scene");
   c->add_flag("--half", a->half, "16-bit floats in the EXR");
   c->add_flag("--lenient", a->lenient, "leave out what the loader does not know, with a note");
   c->add_flag("-q,--quiet", a->quiet, "no progress, no notes");

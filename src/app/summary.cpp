@@ -14,6 +14,8 @@ namespace {
 const char* name_of(Heuristic h) { return h == Heuristic::power ? "power" : "balance"; }
 const char* name_of(SamplerKind k) { return k == SamplerKind::sobol ? "sobol" : "independent"; }
 
+const char* name_of(Guided g) { return g == Guided::both ? "both" : g == Guided::camera ? "camera" : "light"; }
+
 double peak_bytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -24,20 +26,35 @@ double per(double amount, double of) { return of > 0 ? amount / of : 0; }
 
 nlohmann::ordered_json options_json(const Run& run, const Film& film) {
   const RenderOptions& o = run.options;
-  return {{"integrator", o.integrator},
-          {"spp", o.spp},
-          {"seconds", o.seconds},
-          {"cpu_seconds", o.cpu_seconds},
-          {"noise", o.noise},
-          {"seed", o.seed},
-          {"threads", run.threads},
-          {"width", film.width},
-          {"height", film.height},
-          {"max_depth", o.max_depth},
-          {"roulette_depth", o.roulette_depth},
-          {"heuristic", name_of(o.heuristic)},
-          {"sampler", name_of(o.sampler)},
-          {"defines", run.defines}};
+  nlohmann::ordered_json j = {{"integrator", o.integrator},
+                              {"spp", o.spp},
+                              {"seconds", o.seconds},
+                              {"cpu_seconds", o.cpu_seconds},
+                              {"noise", o.noise},
+                              {"seed", o.seed},
+                              {"threads", run.threads},
+                              {"width", film.width},
+                              {"height", film.height},
+                              {"max_depth", o.max_depth},
+                              {"roulette_depth", o.roulette_depth},
+                              {"heuristic", name_of(o.heuristic)},
+                              {"sampler", name_of(o.sampler)},
+                              {"defines", run.defines}};
+  if (!is_guided(o.integrator)) return j;
+  j["guide"] = name_of(o.learn.guided);
+  j["field_memory"] = o.learn.memory;
+  if (!run.load_fields.empty()) j["load_fields"] = run.load_fields;
+  if (!run.save_fields.empty()) j["save_fields"] = run.save_fields;
+  return j;
+}
+
+nlohmann::ordered_json fields_json(const Learning& learning, const Film& film) {
+  const Fields& f = learning.fields;
+  return {{"bytes", bytes(f)},
+          {"cells", f.cells.size()},
+          {"nodes", {{"q", f.q.nodes.size()}, {"w", f.w.nodes.size()}}},
+          {"generation", f.generation},
+          {"dropped_passes", dropped_passes(learning, film)}};
 }
 
 }  // namespace
@@ -53,12 +70,17 @@ nlohmann::ordered_json summary(const Run& run, const RenderState& state) {
   j["options"] = options_json(run, state.film);
   j["spp"] = state.film.passes + double(state.film.chunks) / chunk_count(state.film);
   j["interrupted"] = run.interrupted;
+  const RenderStats& stats = state.stats;
   j["seconds"] = {{"load", run.load_seconds},
                   {"build", run.build_seconds},
-                  {"trace", state.stats.seconds},
+                  {"trace", stats.seconds - stats.learn_seconds},
+                  {"learn", stats.learn_seconds},
                   {"write", run.write_seconds}};
-  j["cpu_seconds"] = {
-      {"load", run.load_cpu}, {"build", run.build_cpu}, {"trace", state.stats.cpu_seconds}, {"write", run.write_cpu}};
+  j["cpu_seconds"] = {{"load", run.load_cpu},
+                      {"build", run.build_cpu},
+                      {"trace", stats.cpu_seconds - stats.learn_cpu_seconds},
+                      {"learn", stats.learn_cpu_seconds},
+                      {"write", run.write_cpu}};
   j["triangles"] = run.triangles;
   j["rays"] = {{"camera", n.camera_rays}, {"light", n.light_rays}, {"shadow", n.shadow_rays}};
   j["rays_per_second"] = per(rays, state.stats.seconds);
@@ -71,6 +93,7 @@ nlohmann::ordered_json summary(const Run& run, const RenderState& state) {
   j["replay_rejected"] = state.stats.replay;
   j["memory_peak_bytes"] = peak_bytes();
   j["accel_bytes"] = run.accel_bytes;
+  if (is_guided(run.options.integrator)) j["fields"] = fields_json(state.learning, state.film);
   if (error.relmse < infinity) {
     j["estimated_relmse"] = error.relmse;
     j["estimated_relmse_trimmed"] = error.relmse_trimmed;
@@ -92,7 +115,8 @@ Metadata metadata(const Run& run, const RenderState& state) {
 
 std::string checkpoint_key(const Run& run, const Film& film) {
   nlohmann::ordered_json o = options_json(run, film);
-  for (const char* budget : {"spp", "seconds", "cpu_seconds", "noise", "threads"}) o.erase(budget);
+  for (const char* budget : {"spp", "seconds", "cpu_seconds", "noise", "threads", "load_fields", "save_fields"})
+    o.erase(budget);
   std::error_code none_such;
   const auto bytes = std::filesystem::file_size(run.scene_path, none_such);
   return fmt::format("{} {} ({} bytes, {} triangles) {}", version,

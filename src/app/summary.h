@@ -14,6 +14,7 @@ namespace ajar {
 struct Run {
   std::string scene_path, out_path;
   std::vector<std::string> defines;
+  std::string load_fields, save_fields;  ///< files, empty: none
   RenderOptions options;
   double load_seconds = 0, build_seconds = 0, write_seconds = 0;
   double load_cpu = 0, build_cpu = 0, write_cpu = 0;

@@ -14,9 +14,98 @@ float adjoint(const Guide& g, const Vec3& wi, const Vec3& local, Mode mode) {
   return g.adjoint * std::abs(glm::dot(g.ng, wi) / local.z);  // (A1)
 }
 
+// How far a field of incident light or importance alone, without the bsdf, is a good guide: not for narrow lobes.
+float breadth(const Lobe& lobe) {
+  const auto rough = [](float alpha) { return std::clamp((alpha - 0.1f) * 2.5f, 0.0f, 1.0f); };
+  switch (lobe.kind) {
+    case LobeKind::diffuse:
+      return 1;
+    case LobeKind::plastic:
+      return 1 - lobe.plastic.share;
+    case LobeKind::roughplastic:
+      return 1 - lobe.roughplastic.share * (1 - rough(lobe.roughplastic.alpha));
+    case LobeKind::roughconductor:
+      return rough(std::min(lobe.roughconductor.facets.alpha_u, lobe.roughconductor.facets.alpha_v));
+    case LobeKind::phong:
+      return 1 - lobe.phong.share * (1 - rough(std::sqrt(2 / (lobe.phong.exponent + 2))));
+    case LobeKind::principled:
+      return rough(sqr(lobe.principled.roughness));
+    default:
+      return 0;  // deltas
+  }
+}
+
+// What turns light to the other side is left alone: other cells guide there, and the densities of the way back.
+bool turns_through(const Lobe& lobe) {
+  const bool trans = lobe.kind == LobeKind::principled && lobe.principled.spec_trans > 0;
+  return trans || lobe.kind == LobeKind::dielectric || lobe.kind == LobeKind::thindielectric ||
+         lobe.kind == LobeKind::roughdielectric;
+}
+
+// Of what does not pass straight through.
+float breadth(const Bsdf& bsdf) {
+  float sum = 0;
+  for (int i = 0; i < bsdf.count; ++i) {
+    if (turns_through(bsdf.lobes[i])) return 0;
+    sum += bsdf.choice[i] * breadth(bsdf.lobes[i]);
+  }
+  return sum / bsdf.opacity;
+}
+
+void place(const Fields& fields, const Surface& surface, Guide& out) {
+  const Place at = find(fields.table, surface.p, glm::dot(surface.ng, out.wo) < 0 ? -surface.ng : surface.ng);
+  out.cell = at.cell, out.missing = at.missing;
+  if (at.cell == none || !out.bsdf.has_smooth) return;
+  const float share = breadth(out.bsdf);
+  if (!(share > 0)) return;
+  const Side other = out.side == Side::camera ? Side::light : Side::camera;
+  out.mix = share * fields.of(out.side).cells[at.cell].mix;
+  out.mix_other = share * fields.of(other).cells[at.cell].mix;
+  if (out.mix_other > 0) out.back = pdf(fields, fields.of(other), at.cell, out.wo);
+}
+
+float pdf_field(const Guide& g, const Vec3& wi) { return pdf(*g.fields, g.fields->of(g.side), g.cell, wi); }
+
+// (G4) for both sides: the bsdf's densities become those of the mixtures. What passes a mask straight does so with the
+// mask's probability, whatever the fields on either side say: the mixtures are of the rest.
+float mix_in(const Bsdf& bsdf, float mix, float bsdf_pdf, float pdf_field) {
+  return (1 - mix) * bsdf_pdf + mix * bsdf.opacity * pdf_field;
+}
+float mixed(const Guide& g, float bsdf_pdf, const Vec3& wi) {
+  return g.mix > 0 ? mix_in(g.bsdf, g.mix, bsdf_pdf, pdf_field(g, wi)) : bsdf_pdf;
+}
+float mixed_back(const Guide& g, float bsdf_pdf) {
+  return g.mix_other > 0 ? mix_in(g.bsdf, g.mix_other, bsdf_pdf, g.back) : bsdf_pdf;
+}
+
+// Whether the field is to be sampled; otherwise u_lobe becomes that of the bsdf, which keeps its first part for
+// passage.
+bool takes_field(const Guide& g, float& u_lobe) {
+  const float pass = g.bsdf.pass, field = g.bsdf.opacity * g.mix;
+  if (!(g.mix > 0) || u_lobe < pass) return false;
+  if (u_lobe < pass + field) return true;
+  u_lobe = std::min(pass + (u_lobe - pass - field) / (1 - g.mix), one_minus_epsilon);
+  return false;
+}
+
+bool sample_field(const Guide& g, const Vec2& u, Mode mode, GuideSample& out) {
+  float pdf_field;
+  out.wi = sample(*g.fields, g.fields->of(g.side), g.cell, u, pdf_field);
+  const Vec3 local = g.frame.to_local(out.wi);
+  if (!(pdf_field > 0) || local.z == 0 || g.blocked || !sides_agree(g, out.wi, local)) return false;
+  const BsdfEval e = eval(g.bsdf, g.wo_local, local, mode);
+  out.pdf = mix_in(g.bsdf, g.mix, e.pdf, pdf_field);
+  out.pdf_reverse = mixed_back(g, e.pdf_reverse);
+  out.weight = e.f * (std::abs(local.z) * adjoint(g, out.wi, local, mode) / out.pdf);
+  out.eta = 1;
+  out.delta = false;
+  return true;
+}
+
 }  // namespace
 
-void make_guide(const Scene& scene, const Surface& surface, const Vec3& wo, Guide& out) {
+void make_guide(const Scene& scene, const Fields* fields, Side side, const Surface& surface, const Vec3& wo,
+                Guide& out) {
   out.frame = surface.frame;
   resolve(scene, surface, wo, out.frame, out.bsdf);
   const float agreement = glm::dot(out.frame.n, surface.ng);
@@ -24,31 +113,55 @@ void make_guide(const Scene& scene, const Surface& surface, const Vec3& wo, Guid
   out.bent = std::abs(agreement) < 1 - 1e-6f;
   out.wo = wo;
   out.wo_local = out.frame.to_local(wo);
-  out.mix = 0;
+  out.mix = out.mix_other = 0;
+  out.side = side;
+  out.fields = fields;
+  out.cell = none;
+  out.missing = 0;
+  if (fields) place(*fields, surface, out);
   out.blocked = false;
   if (!out.bent) return;
   out.blocked = !sides_agree(out, wo, out.wo_local);
   out.adjoint = std::abs(out.wo_local.z / glm::dot(out.ng, wo));
 }
 
+Promise promise(const Guide& guide, const Rgb& beta) {
+  if (guide.cell == none || !connectable(guide)) return {};
+  const FieldCell& cell = guide.fields->of(guide.side).cells[guide.cell];
+  const float scattered = luminance(beta * albedo(guide.bsdf, guide.wo_local)) * inv_pi;
+  return {scattered * cell.total, scattered * (cell.total - cell.direct)};
+}
+
 GuideEval evaluate(const Guide& guide, const Vec3& wi, Mode mode) {
   const Vec3 local = guide.frame.to_local(wi);
   if (local.z == 0 || guide.blocked || !sides_agree(guide, wi, local)) return {};
   const BsdfEval e = eval(guide.bsdf, guide.wo_local, local, mode);
-  return {e.f * (std::abs(local.z) * adjoint(guide, wi, local, mode)), e.pdf, e.pdf_reverse};
+  return {e.f * (std::abs(local.z) * adjoint(guide, wi, local, mode)), mixed(guide, e.pdf, wi),
+          mixed_back(guide, e.pdf_reverse)};
 }
 
 bool sample(const Guide& guide, float u_lobe, const Vec2& u, Mode mode, GuideSample& out) {
+  if (takes_field(guide, u_lobe)) return sample_field(guide, u, mode, out);
   BsdfSample s;
   if (!sample(guide.bsdf, guide.wo_local, u_lobe, u, mode, s)) return false;
   out.wi = guide.frame.to_world(s.wi);
   const bool straight = s.delta && s.wi == -guide.wo_local;  // passes through, whatever the normals say
   if (s.wi.z == 0 || (!straight && (guide.blocked || !sides_agree(guide, out.wi, s.wi)))) return false;
   out.weight = straight ? s.weight : s.weight * adjoint(guide, out.wi, s.wi, mode);
-  out.pdf = s.pdf;
-  out.pdf_reverse = s.pdf_reverse;
   out.eta = s.eta;
   out.delta = s.delta;
+  if (straight) {
+    out.pdf = s.pdf;
+    out.pdf_reverse = s.pdf_reverse;
+  } else if (s.delta) {
+    out.pdf = (1 - guide.mix) * s.pdf;
+    out.pdf_reverse = (1 - guide.mix_other) * s.pdf_reverse;
+    out.weight /= 1 - guide.mix;
+  } else {
+    out.pdf = mixed(guide, s.pdf, out.wi);
+    out.pdf_reverse = mixed_back(guide, s.pdf_reverse);
+    if (guide.mix > 0) out.weight *= s.pdf / out.pdf;
+  }
   return true;
 }
 

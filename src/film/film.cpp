@@ -108,6 +108,13 @@ void merge(Film& film, const std::vector<std::vector<Splat>>& chunks) {
   });
 }
 
+void drop_passes(Film& film) {
+  for (auto* sums : {&film.camera_sum, &film.splat_sum, &film.half_sum, &film.square_sum})
+    std::fill(sums->begin(), sums->end(), glm::dvec3(0));
+  film.dropped += film.passes;
+  film.passes = 0;
+}
+
 void finish_pass(Film& film) {
   const float scale = 1.0f / float(film.pixels());
   tbb::parallel_for(tbb::blocked_range<size_t>(0, film.pixels(), 16384), [&](const auto& range) {

@@ -1,5 +1,7 @@
 #include "ajar/join/connect.h"
 
+#include "ajar/field/emission.h"
+
 namespace ajar {
 namespace {
 
@@ -13,53 +15,56 @@ End end_at(const Subpath& subpath, int n, double other, double reverse) {
 
 }  // namespace
 
-bool join_hit(const Scene& scene, const Subpath& camera, const Surface& surface, Candidate& out) {
+bool join_hit(const Scene& scene, const Fields* fields, const Subpath& camera, const Surface& surface, Candidate& out) {
   const LightPoint point = light_point(scene, surface);
   const Vertex& v = camera[camera.n - 1];
   if (point.light == none) return false;
   const Rgb radiance = emitted(scene, surface, v.guide.wo);
   if (is_black(radiance)) return false;
   out.value = v.beta * radiance;
+  out.arrives = radiance;
   const double pick = scene.light_choice.pdf(point.light);
-  const EmissionPdf emission = pdf_emission(scene, point, v.guide.wo);
+  const EmissionPdf emission = pdf_emission(scene, fields, point, v.guide.wo);
   const Vertex& before = camera[camera.n - 2];
   out.light = {};
   out.camera = {camera.n,     v.own, pick * emission.position, before.own, emission.direction * v.back,
                 before.delta, v.sum};
-  out.shares = {camera.n > 2 ? direct_share(scene, point, before.p, -v.guide.wo, v.distance2) : 0, 1};
+  out.shares = {camera.n > 2 ? direct_share(scene, fields, point, before.p, -v.guide.wo, v.distance2) : 0, 1};
   return true;
 }
 
-bool join_escape(const Scene& scene, uint32_t light, const Subpath& camera, const Walk& walk, Candidate& out) {
+bool join_escape(const Scene& scene, const Fields* fields, uint32_t light, const Subpath& camera, const Walk& walk,
+                 Candidate& out) {
   const Rgb radiance = environment(scene, light, walk.d);
   if (is_black(radiance)) return false;
   out.value = walk.beta * radiance;
   const LightPoint point = light_point(scene, light, walk.d);
   const double pick = scene.light_choice.pdf(light);
-  const EmissionPdf emission = pdf_emission(scene, point, -walk.d);
+  const EmissionPdf emission = pdf_emission(scene, fields, point, -walk.d);
   const Vertex& before = camera[camera.n - 1];
   const double cosine = std::abs(glm::dot(before.ng, walk.d));
   out.light = {};
   out.camera = {camera.n + 1, walk.pdf, pick * emission.direction, before.own, emission.position * cosine,
                 before.delta, walk.sum};
-  out.shares = {camera.n > 1 ? direct_share(scene, point, before.p, walk.d, 1) : 0, 1};
+  out.shares = {camera.n > 1 ? direct_share(scene, fields, point, before.p, walk.d, 1) : 0, 1};
   return true;
 }
 
-bool join_light(const Scene& scene, Sampler& sampler, const Subpath& camera, int t, double light_paths,
-                Candidate& out) {
+bool join_light(const Scene& scene, const Fields* fields, Sampler& sampler, const Subpath& camera, int t,
+                double light_paths, Candidate& out) {
   float pick;
   const Vertex& c = camera[t - 1];
   DirectSample d;
   if (!choose_light_point(scene, c.guide, c.p, sampler, pick, d)) return false;
   const GuideEval e = evaluate(c.guide, d.wi, Mode::radiance);
+  out.arrives = d.radiance * std::abs(glm::dot(c.ng, d.wi)) / (pick * d.pdf);
   out.value = c.beta * e.f_cos * d.radiance / (pick * d.pdf);
   if (is_black(out.value)) return false;
   const LightPoint& point = d.point;
   const double d2 = point.infinite ? 1 : sqr(d.distance);
   const double cos_light = point.infinite || point.delta_position ? 1 : std::abs(glm::dot(point.n, d.wi));
   const double cos_here = std::abs(glm::dot(c.ng, d.wi));
-  const EmissionPdf emission = pdf_emission(scene, point, -d.wi);
+  const EmissionPdf emission = pdf_emission(scene, fields, point, -d.wi);
   const bool hittable = !point.delta_position && !point.delta_direction;
   const double own = pick * double(point.infinite ? emission.direction : emission.position);
   const double to_here = point.infinite ? emission.position : emission.direction;
@@ -100,6 +105,7 @@ bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int
   CameraConnection k;
   if (a.infinite || !connect(scene.camera, a.p, lens, scene.filter.radius, k)) return false;
   const double cosine = a.ng == Vec3(0) ? 1 : std::abs(glm::dot(a.ng, k.w));
+  out.arrives = Rgb(cosine * k.factor);
   if (s == 1) {  // the light's own point, seen directly
     if (a.point.delta_position || !(glm::dot(a.ng, k.w) > 0)) return false;
     out.value = a.beta * float(cosine * k.factor);

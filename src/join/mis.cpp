@@ -4,12 +4,13 @@ namespace ajar {
 namespace {
 
 // Sum over the strategies that take vertices away from this end, relative to "this end keeps all n with ordinary
-// densities". first is the raised share of the strategy that leaves one vertex; the ratios of density are raised here.
-double handed_over(Heuristic h, const End& end, double first) {
+// densities". first and inner are the raised shares of the strategies that leave one vertex and more; the ratios of density
+// are raised here.
+double handed_over(Heuristic h, const End& end, double first, double inner) {
   if (end.n == 0) return 0;
   const double last = raise(h, ratio(end.other, end.own));
   if (end.n == 1) return last * end.sum_before;  // S_0
-  const double share = end.delta_before ? 0 : (end.n == 2 ? first : 1);
+  const double share = end.delta_before ? 0 : (end.n == 2 ? first : inner);
   return last * extend(share, raise(h, ratio(end.other_before, end.own_before)), end.sum_before);  // (R3)
 }
 
@@ -17,9 +18,11 @@ double handed_over(Heuristic h, const End& end, double first) {
 
 double mis_weight(Heuristic h, const End& light, const End& camera, const Shares& shares) {
   const double nee = raise(h, shares.light_first), film = raise(h, shares.camera_first);
+  const double inner = raise(h, shares.inner);
   // Everything relative to the product of ordinary densities with s vertices from emission and t from the camera. (R1)
-  const double here = (light.n == 1 ? nee : 1) * (camera.n == 1 ? film : 1);
-  double fewer_light = handed_over(h, light, nee);
+  const bool both_walked = light.n > 1 && camera.n > 1;
+  const double here = both_walked ? inner : (light.n == 1 ? nee : 1) * (camera.n == 1 ? film : 1);
+  double fewer_light = handed_over(h, light, nee, inner);
   // A strategy with t - 1 .. 1 camera vertices; s + 1 of light: next-event estimation where that is the first one.
   double fewer_camera;
   if (light.n == 0 && camera.n >= 2) {
@@ -28,7 +31,7 @@ double mis_weight(Heuristic h, const End& light, const End& camera, const Shares
     const double share = camera.delta_before ? 0 : (camera.n == 2 ? 0.0 : nee);
     fewer_camera = last * extend(share, raise(h, ratio(camera.other_before, camera.own_before)), camera.sum_before);
   } else {
-    fewer_camera = handed_over(h, camera, film);
+    fewer_camera = handed_over(h, camera, film, inner);
   }
   return here / (here + fewer_light + fewer_camera);
 }

@@ -1,21 +1,23 @@
 #include "ajar/path/walk.h"
 
+#include "ajar/field/emission.h"
+
 namespace ajar {
 namespace {
 
 // v_i of (R2) for i = n - 1 >= 1, the strategy that would connect the last vertex to the one before it.
-double share_of_last(Heuristic h, const Subpath& subpath, const Walk& walk) {
+double share_of_last(const WalkOptions& options, const Subpath& subpath, const Walk& walk) {
   const int last = subpath.n - 1;
   if (subpath[last].delta || subpath[last - 1].delta) return 0;
-  return last == 1 ? raise(h, walk.first_share) : 1;
+  return raise(options.heuristic, last == 1 ? walk.first_share : options.inner_share);
 }
 
 // S of the subpath's last vertex, now that its event is known.
-double sum_of_last(Heuristic h, const Subpath& subpath, const Walk& walk) {
+double sum_of_last(const WalkOptions& options, const Subpath& subpath, const Walk& walk) {
   const Vertex& last = subpath[subpath.n - 1];
   if (subpath.n == 1) return last.sum;
-  const double r = raise(h, ratio(walk.other_before, subpath[subpath.n - 2].own));
-  return extend(share_of_last(h, subpath, walk), r, last.sum);  // (R2)
+  const double r = raise(options.heuristic, ratio(walk.other_before, subpath[subpath.n - 2].own));
+  return extend(share_of_last(options, subpath, walk), r, last.sum);  // (R2)
 }
 
 }  // namespace
@@ -40,14 +42,14 @@ void start_camera(const Scene& scene, const WalkOptions& options, const Vec2& ra
   walk.first_share = options.light_paths;
 }
 
-bool start_light(const Scene& scene, Sampler& sampler, Subpath& subpath, Walk& walk) {
+bool start_light(const Scene& scene, const WalkOptions& options, Sampler& sampler, Subpath& subpath, Walk& walk) {
   subpath.n = 0;
   if (scene.lights.empty()) return false;
   float pick;
   const uint32_t light = choose_light(scene, sampler, pick);
   const Vec2 u_position = sampler.next2(), u_direction = sampler.next2();
   EmissionSample e;
-  if (!sample_emission(scene, light, u_position, u_direction, e) || is_black(e.radiance)) return false;
+  if (!sample_emission(scene, options.fields, light, u_position, u_direction, e) || is_black(e.radiance)) return false;
   const LightPoint& point = e.point;
   const bool place = point.infinite || point.delta_position;
   const float cosine = place ? 1 : std::abs(glm::dot(point.n, e.direction));
@@ -69,9 +71,10 @@ bool start_light(const Scene& scene, Sampler& sampler, Subpath& subpath, Walk& w
   return true;
 }
 
-double direct_share(const Scene& scene, const LightPoint& point, const Vec3& x, const Vec3& wi, double distance2) {
+double direct_share(const Scene& scene, const Fields* fields, const LightPoint& point, const Vec3& x, const Vec3& wi,
+                    double distance2) {
   if (point.delta_position || point.delta_direction) return 1;
-  const EmissionPdf emission = pdf_emission(scene, point, -wi);
+  const EmissionPdf emission = pdf_emission(scene, fields, point, -wi);
   const double direct = pdf_direct(scene, point, x, wi);
   if (point.infinite) return ratio(direct, emission.direction);
   return ratio(direct * std::abs(glm::dot(point.n, wi)) / distance2, emission.position);
@@ -79,7 +82,7 @@ double direct_share(const Scene& scene, const LightPoint& point, const Vec3& x, 
 
 bool step(const Scene& scene, const Accel& accel, const WalkOptions& options, Subpath& subpath, Walk& walk,
           Surface& surface) {
-  walk.sum = sum_of_last(options.heuristic, subpath, walk);
+  walk.sum = sum_of_last(options, subpath, walk);
   Hit hit;
   if (!accel.intersect(walk.o, walk.d, walk.t_min, walk.t_max, hit)) return false;
   surface = make_surface(scene, hit, walk.o, walk.d);
@@ -93,14 +96,15 @@ bool step(const Scene& scene, const Accel& accel, const WalkOptions& options, Su
   v.back = walk.planar ? 1 : (before.ng == Vec3(0) ? 1 : std::abs(glm::dot(before.ng, walk.d))) / v.distance2;
   v.sum = walk.sum;
   v.delta = false, v.infinite = false;
+  v.shines = 0;
   v.shape = hit.shape, v.instance = hit.instance;
   if (subpath.n == 2) {
     if (walk.side == Side::camera)
       v.own = raster_factor(scene.camera, before.p, v.p) * cosine;
     else
-      walk.first_share = direct_share(scene, before.point, v.p, -walk.d, v.distance2);
+      walk.first_share = direct_share(scene, options.fields, before.point, v.p, -walk.d, v.distance2);
   }
-  make_guide(scene, surface, -walk.d, v.guide);
+  make_guide(scene, options.fields, walk.side, surface, -walk.d, v.guide);
   return true;
 }
 
@@ -109,7 +113,7 @@ bool scatter(const WalkOptions& options, Sampler& sampler, Subpath& subpath, Wal
   const Mode mode = walk.side == Side::camera ? Mode::radiance : Mode::importance;
   GuideSample s;
   walk.beta = v.beta;
-  if (!choose_direction(v.guide, mode, subpath.n > options.roulette_from, sampler, walk.beta, walk.survival, s))
+  if (!choose_direction(v.guide, mode, options, subpath.n, sampler, walk.beta, walk.survival, walk.promise, s))
     return false;
   v.delta = s.delta;
   walk.o = offset(v.p, v.ng, v.error, s.wi);

@@ -14,9 +14,14 @@ struct Work {
   double light_share = 1;  // of the light walk, for s = 2
 };
 
+float weigh(const Work& work, Candidate& c) {
+  c.shares.inner = work.job.walk.inner_share;
+  return float(weight(work.job.walk.heuristic, c));
+}
+
 // Weighs a visible candidate and puts it where it belongs.
-void add(Work& work, const Candidate& c, int s, int t) {
-  const float w = float(weight(work.job.walk.heuristic, c));
+void add(Work& work, Candidate& c, int s, int t) {
+  const float w = weigh(work, c);
   const Rgb weighted = c.value * w;
   if (!accept(weighted, work.sample, work.scratch)) return;
   if (t == 1)
@@ -30,9 +35,25 @@ void add(Work& work, const Candidate& c, int s, int t) {
   work.scratch.strategies->push_back({s, t, raster, c.value * filter, weighted * filter});
 }
 
-void add_if_visible(Work& work, const Candidate& c, int s, int t) {
+bool add_if_visible(Work& work, Candidate& c, int s, int t) {
   ++work.scratch.counters.shadow_rays;
-  if (visible(*work.job.accel, c.segment)) add(work, c, s, t);
+  if (!visible(*work.job.accel, c.segment)) return false;
+  add(work, c, s, t);
+  return true;
+}
+
+// What a pixel's error counts for where the lens sees this vertex: errors are judged relative to the image, so the
+// lens's importance is divided by what the field expects the pixel to be. (G5)
+float relative_importance(const Fields& fields, const Guide& guide) {
+  const float out = luminance(albedo(guide.bsdf, guide.wo_local)) * inv_pi * fields.q.cells[guide.cell].total;
+  const float typical = float(fields.q.unit);
+  return typical / std::sqrt(sqr(out) + sqr(0.02f * typical));
+}
+
+// What a vertex received from the light, or the lens, itself: nothing where something is in the way.
+void teach_direct(const Work& work, const Guide& guide, float received) {
+  if (!work.sample.teaches || guide.cell == none) return;
+  record_direct(work.job.walk.fields->of(guide.side), work.job.training->of(guide.side), guide.cell, received);
 }
 
 // The light subpath, and t = 1 at every vertex. The light itself, s = 1, is left to the camera ray that sees it.
@@ -41,7 +62,7 @@ void trace_light_subpath(Work& work) {
   Sampler sampler = make_sampler(job.sampler, job.seed, Side::light, work.sample.path, work.sample.pass);
   Subpath& light = work.scratch.light;
   Walk walk;
-  if (!start_light(*job.scene, sampler, light, walk)) return;
+  if (!start_light(*job.scene, job.walk, sampler, light, walk)) return;
   ++work.scratch.counters.light_paths;
   Surface surface;
   while (light.n < job.walk.max_edges) {
@@ -51,29 +72,53 @@ void trace_light_subpath(Work& work) {
     work.light_share = walk.first_share;
     if (!connectable(light[light.n - 1].guide)) continue;
     Candidate c;
-    if (join_camera(*job.scene, work.sample.lens, light, light.n, work.light_share, job.walk.light_paths, c))
-      add_if_visible(work, c, light.n, 1);
+    const bool seen =
+        join_camera(*job.scene, work.sample.lens, light, light.n, work.light_share, job.walk.light_paths, c) &&
+        add_if_visible(work, c, light.n, 1);
+    const Guide& guide = light[light.n - 1].guide;
+    if (work.sample.teaches && guide.cell != none)
+      teach_direct(work, guide, seen ? luminance(c.arrives) * relative_importance(*job.walk.fields, guide) : 0);
   }
 }
 
-// All joins at the camera subpath's last vertex: s = 0 (surface), 1 and more.
+// s = 0: the camera subpath ran into a light.
+void join_surface(Work& work, const Surface& surface) {
+  const Job& job = work.job;
+  Subpath& camera = work.scratch.camera;
+  Candidate c;
+  if (job.scene->shapes[surface.shape].light == none || !join_hit(*job.scene, job.walk.fields, camera, surface, c))
+    return;
+  add(work, c, 0, camera.n);
+  Vertex& v = camera[camera.n - 1];
+  if (work.sample.teaches) v.shines = luminance(c.arrives) * weigh(work, c);
+}
+
+// s = 1: next-event estimation.
+void join_next_event(Work& work) {
+  const Job& job = work.job;
+  const Subpath& camera = work.scratch.camera;
+  const int t = camera.n;
+  if (job.scene->lights.empty()) return;
+  Candidate c;
+  const bool lit = join_light(*job.scene, job.walk.fields, work.sample.sampler, camera, t, job.walk.light_paths, c) &&
+                   add_if_visible(work, c, 1, t);
+  teach_direct(work, camera[t - 1].guide, lit ? luminance(c.arrives) : 0);
+}
+
+// All joins at the camera subpath's last vertex.
 void join_all(Work& work, const Surface& surface) {
   const Job& job = work.job;
   const Subpath& camera = work.scratch.camera;
   const Subpath& light = work.scratch.light;
   const int t = camera.n;
-  if (job.scene->shapes[surface.shape].light != none) {
-    Candidate c;
-    if (join_hit(*job.scene, camera, surface, c)) add(work, c, 0, t);
-  }
+  join_surface(work, surface);
   if (t > job.walk.max_edges || !connectable(camera[t - 1].guide)) return;
-  Candidate c;
-  const double light_paths = job.walk.light_paths;
-  if (!job.scene->lights.empty() && join_light(*job.scene, work.sample.sampler, camera, t, light_paths, c))
-    add_if_visible(work, c, 1, t);
+  join_next_event(work);
   const int most = std::min(light.n, job.walk.max_edges + 1 - t);
+  Candidate c;
   for (int s = 2; s <= most; ++s)
-    if (connectable(light[s - 1].guide) && join_vertices(light, s, work.light_share, camera, t, light_paths, c))
+    if (connectable(light[s - 1].guide) &&
+        join_vertices(light, s, work.light_share, camera, t, job.walk.light_paths, c))
       add_if_visible(work, c, s, t);
 }
 
@@ -81,7 +126,19 @@ void join_escapes(Work& work, const Walk& walk) {
   const Subpath& camera = work.scratch.camera;
   Candidate c;
   for (const uint32_t light : work.job.scene->infinite_lights)
-    if (join_escape(*work.job.scene, light, camera, walk, c)) add(work, c, 0, camera.n + 1);
+    if (join_escape(*work.job.scene, work.job.walk.fields, light, camera, walk, c)) add(work, c, 0, camera.n + 1);
+}
+
+// What both subpaths teach, and that the lens sees the camera subpath's first vertex.
+void teach(Work& work) {
+  const Job& job = work.job;
+  const Fields& fields = *job.walk.fields;
+  const Subpath& camera = work.scratch.camera;
+  if (camera.n > 1 && connectable(camera[1].guide) && camera[1].guide.cell != none)
+    record_direct(fields.w, job.training->w, camera[1].guide.cell,
+                  float(camera[1].own) * relative_importance(fields, camera[1].guide));
+  record_subpath(fields, *job.training, work.scratch.sightings, work.scratch.light, Side::light);
+  record_subpath(fields, *job.training, work.scratch.sightings, camera, Side::camera);
 }
 
 }  // namespace
@@ -101,6 +158,7 @@ void trace_bdpt(const Job& job, Sample& sample, Scratch& scratch) {
     }
     join_all(work, surface);
   } while (camera.n <= job.walk.max_edges && scatter(job.walk, sample.sampler, camera, walk));
+  if (sample.teaches) teach(work);
 }
 
 }  // namespace ajar

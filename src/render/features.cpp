@@ -16,7 +16,7 @@ void add_first_hit(const Scene& scene, const Accel& accel, const Vec2& raster, c
   if (!accel.intersect(ray.o, ray.d, ray.t_min, ray.t_max, hit)) return;
   Guide guide;
   const Surface surface = make_surface(scene, hit, ray.o, ray.d);
-  make_guide(scene, surface, -ray.d, guide);
+  make_guide(scene, nullptr, Side::camera, surface, -ray.d, guide);
   const Vec3 values[] = {albedo(guide.bsdf, guide.wo_local), guide.frame.n, surface.p};
   for (int i = 0; i < channels; ++i) out[i] += share * values[i / 3][i % 3];
 }

@@ -4,6 +4,8 @@
 
 #include "ajar/film/pyramid.h"
 #include "ajar/join/connect.h"
+#include "ajar/path/record.h"
+#include "ajar/render/learning.h"
 #include "ajar/render/options.h"
 
 namespace ajar {
@@ -15,6 +17,8 @@ struct Job {
   SamplerKind sampler = SamplerKind::sobol;
   uint64_t seed = 0;
   bool techniques = false;
+  const Learning* learning = nullptr;  ///< null: unguided
+  Training* training = nullptr;
 };
 
 /// One camera sample of pixel (x, y) of the film in one pass: where it looks, which numbers it draws, and what it
@@ -26,6 +30,7 @@ struct Sample {
   Vec2 raster{0}, lens{0};
   float filter = 1;  ///< what the filter makes of the camera path's radiance
   Sampler sampler;
+  bool teaches = false;  ///< what its subpaths see is recorded
   Rgb value{0};  ///< radiance found by the camera path, unfiltered
 };
 
@@ -33,6 +38,7 @@ struct Sample {
 struct Scratch {
   Subpath camera, light;
   Counters counters;
+  Sightings sightings;
   uint64_t rejected = 0;
   uint64_t rejected_at = no_path;               ///< path of the chunk's first rejected value
   std::vector<Splat>* splats = nullptr;         ///< of the chunk

@@ -9,7 +9,7 @@ void trace_light(const Job& job, Sample& sample, Scratch& scratch) {
   Sampler sampler = make_sampler(job.sampler, job.seed, Side::light, sample.path, sample.pass);
   Subpath& light = scratch.light;
   Walk walk;
-  if (!start_light(scene, sampler, light, walk)) return;
+  if (!start_light(scene, job.walk, sampler, light, walk)) return;
   ++scratch.counters.light_paths;
   Surface surface;
   for (;;) {

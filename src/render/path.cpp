@@ -53,12 +53,13 @@ struct Flight {
   double pdf = 1;     // of its direction, per solid angle
   bool alone = true;  // next-event estimation could not have found its end
   Rgb beta{1}, survival{1};
+  float promise = 0;
 };
 
 // Chooses where the path goes on; false where it ends.
 bool scatter(const Job& job, const Guide& guide, const Surface& at, int edges, Sampler& sampler, Flight& f) {
   GuideSample s;
-  if (!choose_direction(guide, Mode::radiance, edges >= job.walk.roulette_from, sampler, f.beta, f.survival, s))
+  if (!choose_direction(guide, Mode::radiance, job.walk, edges + 1, sampler, f.beta, f.survival, f.promise, s))
     return false;
   f.o = offset(at.p, at.ng, at.error, s.wi), f.d = s.wi;
   f.t_min = 0, f.t_max = infinity;
@@ -87,7 +88,7 @@ void trace_path(const Job& job, Sample& sample, Scratch& scratch) {
     const Surface at = make_surface(scene, hit, f.o, f.d);
     if (scene.shapes[hit.shape].light != none) value += f.beta * hit_light(scene, h, at, f.from, f.d, f.pdf, f.alone);
     if (edges >= job.walk.max_edges) return;
-    make_guide(scene, at, -f.d, guide);
+    make_guide(scene, job.walk.fields, Side::camera, at, -f.d, guide);
     if (connectable(guide) && !scene.lights.empty())
       value += f.beta * direct(job, guide, at, sample.sampler, scratch.counters);
     if (!scatter(job, guide, at, edges, sample.sampler, f)) return;

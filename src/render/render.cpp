@@ -19,15 +19,22 @@ struct Integrator {
   const char* name;
   Trace trace;
   bool splats;
+  bool guided = false;
 };
-constexpr Integrator integrators[] = {
-    {"path", trace_path, false}, {"bdpt", trace_bdpt, true}, {"light", trace_light, true}};
+constexpr Integrator integrators[] = {{"path", trace_path, false},
+                                      {"bdpt", trace_bdpt, true},
+                                      {"light", trace_light, true},
+                                      {"guided-bdpt", trace_bdpt, true, true}};
 
 const Integrator& find_integrator(const std::string& name) {
   for (const Integrator& i : integrators)
     if (name == i.name) return i;
   throw Error(fmt::format("--integrator {}: unknown; known are {}", name, fmt::join(integrator_names(), ", ")));
 }
+
+// Guided subpaths that end on two sides of a wall rarely see each other; densities do not know, so weights trust these
+// joins less than what next-event estimation and the lens bring.
+constexpr double guided_inner_share = 0.3;
 
 // Chunks traced between two merges: bounds the memory of splats and the time to the next look at the clock.
 constexpr uint32_t batch_chunks = 256;
@@ -45,7 +52,8 @@ Sample make_sample(const Job& job, const Film& film, int x, int y) {
   Sample s;
   s.x = x, s.y = y;
   s.path = uint64_t(y) * uint64_t(film.width) + uint64_t(x);
-  s.pass = film.passes;
+  s.pass = film.dropped + film.passes;
+  s.teaches = job.learning && is_recorded(*job.learning, s.path, s.pass);
   s.sampler = make_sampler(job.sampler, job.seed, Side::camera, s.path, s.pass);
   const Vec2 centre(float(film.x0 + x) + 0.5f, float(film.y0 + y) + 0.5f);
   s.raster = centre + ajar::sample(film.filter, s.sampler.next2(), s.filter);
@@ -106,7 +114,18 @@ void note_rejected(RenderStats& stats, const std::vector<uint64_t>& pixels, cons
   for (const uint64_t p : pixels)
     if (p != Scratch::no_path && stats.replay.size() < 5)
       stats.replay.push_back(fmt::format("pixel {},{} pass {} seed {}", p % uint64_t(film.width),
-                                         p / uint64_t(film.width), film.passes, seed));
+                                         p / uint64_t(film.width), film.dropped + film.passes, seed));
+}
+
+using Scratches = tbb::enumerable_thread_specific<Scratch>;
+
+void teach(RenderState& state, const RenderOptions& options) {
+  const double wall = wall_seconds(), cpu = process_cpu_seconds();
+  const uint32_t dropped = state.film.dropped;
+  end_pass(state.learning, options.learn, state.film);
+  if (state.film.dropped != dropped) state.pyramid = {};
+  state.stats.learn_seconds += wall_seconds() - wall;
+  state.stats.learn_cpu_seconds += process_cpu_seconds() - cpu;
 }
 
 }  // namespace
@@ -116,6 +135,8 @@ std::vector<std::string> integrator_names() {
   for (const Integrator& i : integrators) names.emplace_back(i.name);
   return names;
 }
+
+bool is_guided(const std::string& integrator) { return find_integrator(integrator).guided; }
 
 double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -129,7 +150,9 @@ double process_cpu_seconds() {
 
 RenderState start_render(const Scene& scene, const RenderOptions& options) {
   RenderState state;
-  state.film = make_film(scene.camera, scene.filter, find_integrator(options.integrator).splats);
+  const Integrator& integrator = find_integrator(options.integrator);
+  state.film = make_film(scene.camera, scene.filter, integrator.splats);
+  if (integrator.guided) state.learning = start_learning(scene, state.film);
   return state;
 }
 
@@ -138,7 +161,12 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   const Trace trace = find_integrator(options.integrator).trace;
   Film& film = state.film;
   RenderStats& stats = state.stats;
-  const Job job = make_job(scene, accel, options, film);
+  Job job = make_job(scene, accel, options, film);
+  if (find_integrator(options.integrator).guided) {
+    job.learning = &state.learning, job.training = &state.learning.training;
+    job.walk.fields = &state.learning.fields;
+    job.walk.inner_share = guided_inner_share;
+  }
   double wall0 = 0, cpu0 = 0;
   const auto start_clocks = [&] {
     wall0 = wall_seconds() - stats.seconds;
@@ -151,7 +179,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   start_clocks();
   const bool timed = options.seconds > 0 || options.cpu_seconds > 0;
   tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
-  tbb::enumerable_thread_specific<Scratch> scratches;
+  Scratches scratches;
   Batch batch;
   const uint32_t all = chunk_count(film);
   const auto out_of_budget = [&] {
@@ -188,11 +216,13 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
       if (film.chunks == all) finish_pass(film);
     });
     for (Scratch& s : scratches) {
+      gather(state.learning.sightings, s.sightings);
       stats.counters += s.counters;
       stats.rejected += s.rejected;
       s.counters = {};
       s.rejected = 0;
     }
+    if (job.learning && film.chunks == 0) arena.execute([&] { teach(state, options); });
     // Who watches, measuring errors perhaps, does so on his own time.
     read_clocks();
     const bool go_on = !monitor || monitor(state);

@@ -97,20 +97,22 @@ bool race(const LoadedScene& loaded, const Budget& budget, const Picture& refere
 Json run_json(const Racer& racer) {
   const RenderStats& stats = racer.state.stats;
   const Counters& n = stats.counters;
-  return {{"seed", racer.options.seed},
-          {"spp", spp_of(racer.state.film)},
-          {"seconds", stats.seconds},
-          {"cpu_seconds", stats.cpu_seconds},
-          {"samples", racer.samples},
-          {"phases_cpu", {{"trace", stats.cpu_seconds}, {"learn", 0}, {"rebuild", 0}}},
-          {"rays", {{"camera", n.camera_rays}, {"light", n.light_rays}, {"shadow", n.shadow_rays}}},
-          {"mean_path_edges",
-           {{"camera", per(double(n.camera_rays), double(n.camera_paths))},
-            {"light", per(double(n.light_rays), double(n.light_paths))}}},
-          {"zero_contribution_paths", per(double(n.zero_paths), double(n.camera_paths))},
-          {"rejected_values", stats.rejected},
-          {"field_bytes", 0},
-          {"memory_peak_bytes", peak_bytes()}};
+  return {
+      {"seed", racer.options.seed},
+      {"spp", spp_of(racer.state.film)},
+      {"seconds", stats.seconds},
+      {"cpu_seconds", stats.cpu_seconds},
+      {"samples", racer.samples},
+      {"phases_cpu",
+       {{"trace", stats.cpu_seconds - stats.learn_cpu_seconds}, {"learn", stats.learn_cpu_seconds}, {"rebuild", 0}}},
+      {"rays", {{"camera", n.camera_rays}, {"light", n.light_rays}, {"shadow", n.shadow_rays}}},
+      {"mean_path_edges",
+       {{"camera", per(double(n.camera_rays), double(n.camera_paths))},
+        {"light", per(double(n.light_rays), double(n.light_paths))}}},
+      {"zero_contribution_paths", per(double(n.zero_paths), double(n.camera_paths))},
+      {"rejected_values", stats.rejected},
+      {"field_bytes", bytes(racer.state.learning.fields)},
+      {"memory_peak_bytes", peak_bytes()}};
 }
 
 }  // namespace ajar

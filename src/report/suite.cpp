@@ -18,6 +18,7 @@ namespace fs = std::filesystem;
 constexpr double longest = 1e7;  // seconds
 
 const std::vector<std::string> heuristics = {"power", "balance"}, samplers = {"sobol", "independent"};
+const std::vector<std::string> guided = {"both", "camera", "light"};  // in the order of the enumerators
 
 /// An option of a method: how a suite sets it, how a report shows it. A new option is a line in the table.
 struct Option {
@@ -41,6 +42,11 @@ const Option options_table[] = {
      [](const RenderOptions& o) { return Json(samplers[o.sampler == SamplerKind::sobol ? 0 : 1]); }},
     {"roulette_depth", [](RenderOptions& o, const Element& e) { o.roulette_depth = int(integer(e, 1, deepest)); },
      [](const RenderOptions& o) { return Json(o.roulette_depth); }},
+    {"guide", [](RenderOptions& o, const Element& e) { o.learn.guided = Guided(choice(e, guided)); },
+     [](const RenderOptions& o) { return Json(guided[size_t(o.learn.guided)]); }},
+    {"field_memory",
+     [](RenderOptions& o, const Element& e) { o.learn.memory = size_t(integer(e, 64 << 10, int64_t(64) << 30)); },
+     [](const RenderOptions& o) { return Json(o.learn.memory); }},
 };
 
 const std::vector<std::string> budget_keys = {"cpu_seconds", "seconds", "spp"};

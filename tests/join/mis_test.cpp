@@ -39,7 +39,7 @@ SideView view(const OraclePath& path, Side side, Heuristic h) {
   const double first = light ? double(path.nee / path.vertices[0].light) : double(path.light_paths);
   v.sums.push_back(light && path.hittable ? 1 : 0);
   for (size_t i = 1; i < n; ++i) {
-    const double share = v.delta[i] || v.delta[i - 1] ? 0 : i == 1 ? raise(h, first) : 1;
+    const double share = v.delta[i] || v.delta[i - 1] ? 0 : raise(h, i == 1 ? first : double(path.inner));
     v.sums.push_back(extend(share, raise(h, ratio(v.other[i - 1], v.own[i - 1])), v.sums[i - 1]));
   }
   return v;
@@ -57,7 +57,7 @@ std::vector<double> fast_weights(const OraclePath& path, Heuristic h) {
   const int n = int(path.vertices.size());
   const SideView light = view(path, Side::light, h), camera = view(path, Side::camera, h);
   const auto possible = kit::densities(path);
-  const Shares shares{double(path.nee / path.vertices[0].light), double(path.light_paths)};
+  const Shares shares{double(path.nee / path.vertices[0].light), double(path.light_paths), double(path.inner)};
   std::vector<double> out(size_t(n), 0.0);
   for (int s = 0; s < n; ++s)
     if (possible[size_t(s)] > 0) out[size_t(s)] = mis_weight(h, end_of(light, s), end_of(camera, n - s), shares);
@@ -79,6 +79,7 @@ struct Maker {
     p.hittable = uniform() < 0.7;
     p.nee = p.hittable ? static_cast<long double>(density()) : p.vertices[0].light;
     p.light_paths = uniform() < 0.5 ? 1 : std::floor(1 + 1e6 * uniform());
+    p.inner = uniform() < 0.5 ? 1 : 2 * uniform();
     return p;
   }
 };

@@ -18,6 +18,7 @@ struct OraclePath {
   bool hittable = true;         ///< a ray from the camera's side can find x_0
   long double nee = 1;          ///< density of next-event estimation for x_0, in the measure of vertices[0].light
   long double light_paths = 1;  ///< light subpaths for each camera sample
+  long double inner = 1;        ///< factor on the density of joins of two walked vertices
 };
 
 /// Density of each strategy, s = 0 .. k light vertices and k + 1 - s >= 1 camera vertices; 0 where it cannot make the

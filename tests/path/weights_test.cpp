@@ -4,9 +4,11 @@
 
 #include <map>
 
+#include "ajar/field/emission.h"
 #include "ajar/join/connect.h"
 #include "kit/oracle.h"
 #include "kit/stage.h"
+#include "train.h"
 
 namespace ajar {
 namespace {
@@ -21,6 +23,7 @@ struct Point {
 };
 
 struct WholePath {
+  const Fields* fields = nullptr;
   LightPoint light;      // x_0; Point 0 is not used when it is infinite
   Vec3 travel{0, 0, 1};  // of the light at x_0
   std::vector<Point> points;
@@ -53,13 +56,14 @@ double delta_probability(const Guide& guide, const Vec3& wi, Mode mode) {
 // Solid-angle density of leaving x_i towards `next`, having come from `before`.
 double scatter_pdf(const Scene& scene, const WholePath& path, size_t before, size_t i, size_t next, Mode mode) {
   Guide guide;
-  make_guide(scene, path.points[i].surface, towards(path, i, before), guide);
+  make_guide(scene, path.fields, mode == Mode::radiance ? Side::camera : Side::light, path.points[i].surface,
+             towards(path, i, before), guide);
   const Vec3 wi = towards(path, i, next);
   return path.points[i].delta ? delta_probability(guide, wi, mode) : evaluate(guide, wi, mode).pdf;
 }
 
 double light_density(const Scene& scene, const WholePath& path, size_t i) {
-  const EmissionPdf emission = pdf_emission(scene, path.light, path.travel);
+  const EmissionPdf emission = pdf_emission(scene, path.fields, path.light, path.travel);
   const double pick = scene.light_choice.pdf(path.light.light);
   if (i == 0) return pick * (path.light.infinite ? emission.direction : emission.position);
   const Vec3 w = towards(path, i - 1, i);
@@ -139,11 +143,13 @@ Way way_of(int s, int t) {
 
 struct Tally {
   Heuristic heuristic = Heuristic::power;
+  const Fields* fields = nullptr;
   double light_paths = 333;
   int compared[5] = {}, off[5] = {};
   double worst[5] = {};
 
-  void compare(const Scene& scene, const Candidate& c, const WholePath& path, int s) {
+  void compare(const Scene& scene, const Candidate& c, WholePath path, int s) {
+    path.fields = fields;
     const OraclePath slow = densities_afresh(scene, path, light_paths);
     const auto expected = weights(slow, heuristic == Heuristic::power ? 2 : 1);
     const double fast = weight(heuristic, c), right = double(expected[size_t(s)]);
@@ -194,13 +200,13 @@ void compare_all(const Tracer& tracer, Traced& light, Traced& camera, const Vec2
     part.n = t;
     const Vertex& last = camera.path[t - 1];
     const Surface& surface = camera.surfaces[size_t(t - 2)];
-    if (join_hit(scene, part, surface, c)) {
+    if (join_hit(scene, tally.fields, part, surface, c)) {
       WholePath path = lit(light_point(scene, surface), -last.guide.wo, camera, t - 1, camera.path[t - 2].delta);
       tally.compare(scene, c, path, 0);
     }
     if (!connectable(last.guide)) continue;
     Sampler same = sampler;
-    if (join_light(scene, sampler, camera.path, t, n, c)) {
+    if (join_light(scene, tally.fields, sampler, camera.path, t, n, c)) {
       float pick;
       const uint32_t chosen = choose_light(scene, same, pick);
       DirectSample d;
@@ -221,38 +227,57 @@ void compare_all(const Tracer& tracer, Traced& light, Traced& camera, const Vec2
     }
   if (!camera.escaped) return;
   for (const uint32_t l : scene.infinite_lights)
-    if (join_escape(scene, l, camera.path, camera.walk, c)) {
+    if (join_escape(scene, tally.fields, l, camera.path, camera.walk, c)) {
       const int t = camera.path.n;
       tally.compare(scene, c,
                     lit(light_point(scene, l, camera.walk.d), camera.walk.d, camera, t, camera.path[t - 1].delta), 0);
     }
 }
 
+struct Case {
+  Heuristic heuristic = Heuristic::power;
+  const Fields* fields = nullptr;
+};
+
+void expect_oracle(const Scene& scene, int paths, const Case& which) {
+  Tally tally;
+  tally.heuristic = which.heuristic;
+  tally.fields = which.fields;
+  Tracer tracer(scene);
+  tracer.options.heuristic = which.heuristic;
+  tracer.options.fields = which.fields;
+  tracer.options.light_paths = tally.light_paths;
+  int compared = 0, vertices = 0, guided = 0;
+  for (int i = 0; i < paths; ++i) {
+    Sampler c = make_sampler(SamplerKind::independent, 1, Side::camera, uint64_t(i), 0);
+    Sampler l = make_sampler(SamplerKind::independent, 1, Side::light, uint64_t(i), 0);
+    const Vec2 raster = c.next2() * Vec2(float(scene.camera.width), float(scene.camera.height)), lens = c.next2();
+    Traced camera, light;
+    start_camera(scene, tracer.options, raster, lens, camera.path, camera.walk);
+    tracer.go_on(camera, c, true);
+    if (start_light(scene, tracer.options, l, light.path, light.walk)) tracer.go_on(light, l, true);
+    compare_all(tracer, light, camera, lens, c, tally);
+    for (const Traced* t : {&camera, &light})
+      for (int k = 1; k < t->path.n; ++k) ++vertices, guided += t->path[k].guide.mix > 0.2f;
+  }
+  for (size_t way = 0; way < 5; ++way) {
+    // Rounding of positions makes a few weights uncertain, where vertices nearly touch or directions graze.
+    EXPECT_LE(tally.off[way], tally.compared[way] / 200)
+        << way_names[way] << ": of " << tally.compared[way] << ", worst " << tally.worst[way];
+    compared += tally.compared[way];
+  }
+  EXPECT_GT(compared, paths / 2);
+  EXPECT_TRUE(!which.fields || guided > vertices / 20) << guided << " of " << vertices << " are too few";
+}
+
+// Bare, and with guides that carry trained fields on both sides.
 void expect_oracle(const Scene& scene, int paths = 3000) {
+  const Fields fields = train(scene, Accel(scene));
   for (const Heuristic heuristic : {Heuristic::balance, Heuristic::power}) {
-    Tally tally;
-    tally.heuristic = heuristic;
-    Tracer tracer(scene);
-    tracer.options.heuristic = heuristic;
-    tracer.options.light_paths = tally.light_paths;
-    for (int i = 0; i < paths; ++i) {
-      Sampler c = make_sampler(SamplerKind::independent, 1, Side::camera, uint64_t(i), 0);
-      Sampler l = make_sampler(SamplerKind::independent, 1, Side::light, uint64_t(i), 0);
-      const Vec2 raster = c.next2() * Vec2(float(scene.camera.width), float(scene.camera.height)), lens = c.next2();
-      Traced camera, light;
-      start_camera(scene, tracer.options, raster, lens, camera.path, camera.walk);
-      tracer.go_on(camera, c, true);
-      if (start_light(scene, l, light.path, light.walk)) tracer.go_on(light, l, true);
-      compare_all(tracer, light, camera, lens, c, tally);
-    }
-    int compared = 0;
-    for (size_t way = 0; way < 5; ++way) {
-      // Rounding of positions makes a few weights uncertain, where vertices nearly touch or directions graze.
-      EXPECT_LE(tally.off[way], tally.compared[way] / 200)
-          << way_names[way] << ": of " << tally.compared[way] << ", worst " << tally.worst[way];
-      compared += tally.compared[way];
-    }
-    EXPECT_GT(compared, paths / 2);
+    SCOPED_TRACE(heuristic == Heuristic::balance ? "balance" : "power");
+    expect_oracle(scene, paths, {heuristic, nullptr});
+    SCOPED_TRACE("guided");
+    expect_oracle(scene, paths / 2, {heuristic, &fields});
   }
 }
 
@@ -301,6 +326,12 @@ Scene open(LightKind kind) {
 }
 
 TEST(Weights, Diffuse) { expect_oracle(finished(stage())); }
+// Emission is guided where the lamp itself scatters.
+TEST(Weights, GreyLamp) {
+  Scene scene = stage();
+  scene.shapes[scene.lights[0].shape].material = add_diffuse(scene, Rgb(0.4f));
+  expect_oracle(finished(std::move(scene)));
+}
 TEST(Weights, Glossy) { expect_oracle(with_sphere(of_kind(MaterialKind::roughconductor, 0.3f))); }
 TEST(Weights, RoughGlass) { expect_oracle(with_sphere(of_kind(MaterialKind::roughdielectric, 0.3f))); }
 TEST(Weights, Glass) { expect_oracle(with_sphere(of_kind(MaterialKind::dielectric))); }
@@ -343,6 +374,21 @@ TEST(Weights, TwoFacedMask) {
   mask.nested[0] = add_material(scene, faces);
   add_quad(scene, {-0.9f, -0.2f, 0.5f}, {1.8f, 0, 0}, {0, 0.2f, -1.3f}, add_material(scene, mask));
   expect_oracle(finished(std::move(scene)));
+}
+
+// Lobes that reflect beside lobes that transmit: the fields of two sides meet.
+TEST(Weights, GlassAndDiffuse) {
+  for (const MaterialKind kind : {MaterialKind::dielectric, MaterialKind::thindielectric, MaterialKind::roughdielectric,
+                                  MaterialKind::principled}) {
+    SCOPED_TRACE(int(kind));
+    Scene scene = stage();
+    Material blend = of_kind(MaterialKind::blend), clear = of_kind(kind, 0.3f);
+    clear.spec_trans = 0.5f;
+    blend.weight = 0.4f;
+    blend.nested[0] = add_diffuse(scene, Rgb(0.7f)), blend.nested[1] = add_material(scene, clear);
+    add_sphere(scene, {0.1f, -0.3f, 0.2f}, 0.5f, add_material(scene, blend));
+    expect_oracle(finished(std::move(scene)), 1000);
+  }
 }
 
 TEST(Weights, ManyLights) {

@@ -1,6 +1,6 @@
-// path = bdpt = light tracing by z-test, one small scene for each feature. What an integrator cannot sample is left
-// out: light tracing makes no light seen over mirrors and glass alone and no environment seen directly; path tracing
-// finds no caustic of a light without extent.
+// path = bdpt = light tracing = guided bdpt by z-test, one small scene for each feature. What an integrator cannot
+// sample is left out: light tracing makes no light seen over mirrors and glass alone and no environment seen directly;
+// path tracing finds no caustic of a light without extent.
 #include <gtest/gtest.h>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -399,6 +399,9 @@ TEST_P(Agree, InEveryBlock) {
     options.integrator = "light";
     expect_same(measure(scene, options, {.batches = 16, .passes = 120, .seed = 3000}), bdpt, "light, bdpt");
   }
+  // The young passes are dropped, so these are passes through fields that have learned, and went on learning.
+  options.integrator = "guided-bdpt";
+  expect_same(measure(scene, options, {.batches = 16, .passes = 40, .seed = 4000}), bdpt, "guided-bdpt, bdpt");
 }
 
 INSTANTIATE_TEST_SUITE_P(Features, Agree, testing::ValuesIn(features),

@@ -34,6 +34,42 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
+void expect_same_field(const Field& a, const Field& b) {
+  EXPECT_EQ(a.unit, b.unit);
+  EXPECT_TRUE(same_bytes(a.cells, b.cells));
+  EXPECT_TRUE(std::equal(a.nodes.begin(), a.nodes.end(), b.nodes.begin(), b.nodes.end(), [](auto& x, auto& y) {
+    return std::equal(x.before, x.before + 16, y.before) && x.divided == y.divided && x.children == y.children;
+  }));
+  EXPECT_TRUE(same_bytes(a.mean, b.mean));
+  EXPECT_TRUE(same_bytes(a.weight, b.weight));
+}
+
+void expect_same_tallies(const Tallies& a, const Tallies& b) {
+  EXPECT_EQ(a.value, b.value);
+  EXPECT_EQ(a.weight, b.weight);
+  EXPECT_EQ(a.direct, b.direct);
+  EXPECT_EQ(a.directs, b.directs);
+  EXPECT_EQ(a.visits, b.visits);
+}
+
+void expect_same_learning(const Learning& a, const Learning& b) {
+  EXPECT_EQ(a.passes, b.passes);
+  EXPECT_EQ(a.first, b.first);
+  EXPECT_EQ(a.fields.generation, b.fields.generation);
+  ASSERT_EQ(a.fields.cells.size(), b.fields.cells.size());
+  for (size_t i = 0; i < a.fields.cells.size(); ++i) EXPECT_EQ(a.fields.cells[i].key, b.fields.cells[i].key);
+  expect_same_field(a.fields.q, b.fields.q);
+  expect_same_field(a.fields.w, b.fields.w);
+  expect_same_tallies(a.training.q, b.training.q);
+  expect_same_tallies(a.training.w, b.training.w);
+  ASSERT_EQ(a.sightings.size(), b.sightings.size());
+  for (const auto& [key, seen] : a.sightings) {
+    ASSERT_TRUE(b.sightings.contains(key));
+    EXPECT_EQ(seen.count, b.sightings.at(key).count);
+    EXPECT_EQ(seen.normal, b.sightings.at(key).normal);
+  }
+}
+
 void expect_same_bytes(const RenderState& a, const RenderState& b) {
   EXPECT_EQ(a.film.passes, b.film.passes);
   EXPECT_EQ(a.film.chunks, b.film.chunks);
@@ -53,6 +89,8 @@ void expect_same_bytes(const RenderState& a, const RenderState& b) {
   EXPECT_EQ(a.stats.counters.camera_rays, b.stats.counters.camera_rays);
   EXPECT_EQ(a.stats.counters.light_rays, b.stats.counters.light_rays);
   EXPECT_EQ(a.stats.counters.shadow_rays, b.stats.counters.shadow_rays);
+  EXPECT_EQ(a.film.dropped, b.film.dropped);
+  expect_same_learning(a.learning, b.learning);
 }
 
 RenderOptions options_of(const std::string& integrator, uint32_t spp, uint64_t seed = 5) {
@@ -161,6 +199,79 @@ TEST(Determinism, CheckpointAmidAPassIsTheStraightRun) {
     render(scene, accel, o, second, always);
     expect_same_bytes(straight, second);
     EXPECT_EQ(second.stats.rejected, 0u);
+  }
+}
+
+// Stopped among the young passes, at their end and after it, amid lessons and amid passes; each time from a file.
+TEST(Determinism, GuidedCheckpointsAreTheStraightRun) {
+  const Scene scene = strip(true);
+  const Accel accel(scene);
+  const RenderOptions o = options_of("guided-bdpt", 10);
+  const RenderState straight = rendered(scene, accel, o);
+  EXPECT_EQ(straight.film.dropped, young_generations);
+  EXPECT_EQ(straight.learning.fields.generation, young_generations + 1) << "learned once since";
+  ASSERT_GT(straight.learning.fields.cells.size(), 10u);
+  const File file("ajar_guided");
+  RenderState state = start_render(scene, o);
+  for (const int looks : {3, 2, 11, 1, 9, 1000}) {
+    int seen = 0;
+    render(scene, accel, o, state, [&](const RenderState&) { return ++seen < looks; });
+    save_checkpoint(file.path, "key", state);
+    RenderState next = start_render(scene, o);
+    load_checkpoint(file.path, "key", next);
+    expect_same_bytes(state, next);
+    EXPECT_EQ(state.stats.learn_seconds, next.stats.learn_seconds);
+    state = std::move(next);
+  }
+  expect_same_bytes(straight, state);
+}
+
+TEST(Determinism, StoredFieldsSpareTheYoungPasses) {
+  const Scene scene = strip(false);
+  const Accel accel(scene);
+  const RenderOptions o = options_of("guided-bdpt", 9);
+  const RenderState first = rendered(scene, accel, o);
+  const File file("ajar_fields");
+  save_fields(file.path, stored_fields(scene, first.learning, first.film));
+  RenderState second = start_render(scene, o);
+  go_on_from(load_fields(file.path, scene_key(scene)), o.learn, second.learning, second.film);
+  expect_same_field(first.learning.fields.q, second.learning.fields.q);
+  expect_same_field(first.learning.fields.w, second.learning.fields.w);
+  render(scene, accel, o, second, always);
+  EXPECT_EQ(second.film.passes, 9u);
+  EXPECT_EQ(dropped_passes(second.learning, second.film), 0u);
+  EXPECT_EQ(dropped_passes(first.learning, first.film), young_generations);
+  EXPECT_GE(second.film.dropped, first.film.dropped + first.film.passes) << "no pass number is drawn from twice";
+  EXPECT_EQ(second.film.dropped % 2, 0u);
+  EXPECT_FALSE(same_bytes(develop(first.film).pixels, develop(second.film).pixels));
+  // From young fields the render goes on being young, and drops what is left of it.
+  RenderState young = start_render(scene, o);
+  int passes = 0;
+  render(scene, accel, o, young, [&](const RenderState&) { return ++passes < 3; });
+  RenderState third = start_render(scene, o);
+  go_on_from(stored_fields(scene, young.learning, young.film), o.learn, third.learning, third.film);
+  render(scene, accel, o, third, always);
+  EXPECT_EQ(dropped_passes(third.learning, third.film), young_generations - 3);
+}
+
+TEST(Determinism, FieldsGuideTheSideThatIsAskedFor) {
+  const Scene scene = strip(false);
+  const Accel accel(scene);
+  RenderOptions o = options_of("guided-bdpt", 9);
+  const auto guides = [](const Field& f) {
+    return std::any_of(f.cells.begin(), f.cells.end(), [](const FieldCell& c) { return c.mix > 0; });
+  };
+  const RenderState both = rendered(scene, accel, o);
+  EXPECT_TRUE(guides(both.learning.fields.q) && guides(both.learning.fields.w));
+  for (const Guided side : {Guided::camera, Guided::light}) {
+    o.learn.guided = side;
+    const RenderState one = rendered(scene, accel, o);
+    EXPECT_EQ(guides(one.learning.fields.q), side == Guided::camera);
+    EXPECT_EQ(guides(one.learning.fields.w), side == Guided::light);
+    RenderState loaded = start_render(scene, o);
+    go_on_from(stored_fields(scene, both.learning, both.film), o.learn, loaded.learning, loaded.film);
+    EXPECT_EQ(guides(loaded.learning.fields.q), side == Guided::camera);
+    EXPECT_EQ(guides(loaded.learning.fields.w), side == Guided::light);
   }
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 using namespace kit;
 
-constexpr const char* all[] = {"path", "bdpt", "light"};
+constexpr const char* all[] = {"path", "bdpt", "light", "guided-bdpt"};
 
 Scene furnished() {
   Scene scene = stage();
@@ -49,7 +49,7 @@ double sum_of(const Picture& p) {
 
 class Size : public testing::TestWithParam<float> {};
 TEST_P(Size, DoesNotMatter) {
-  for (const char* integrator : {"path", "bdpt"}) {
+  for (const char* integrator : {"path", "bdpt", "guided-bdpt"}) {
     const Plan plan{.batches = 16, .passes = 30};
     const RenderOptions options = statistical(integrator);
     expect_same(measure(scaled(1), options, plan), measure(scaled(GetParam()), options, plan), integrator);
@@ -73,7 +73,9 @@ TEST(Extreme, BrightnessIsAFactor) {
       finish(scene);
       const double sum = sum_of(image_of(scene, integrator)) / factor;
       if (factor == 1) expected = sum;
-      EXPECT_NEAR(sum, expected, 1e-4 * expected) << integrator << ' ' << factor;
+      // Rounding turns some choices of a guided path over: what was learned decides them.
+      const double tolerance = std::string(integrator).starts_with("guided") ? 1e-3 : 1e-4;
+      EXPECT_NEAR(sum, expected, tolerance * expected) << integrator << ' ' << factor;
       EXPECT_GT(sum, 0);
     }
   }
@@ -165,7 +167,7 @@ TEST(Extreme, MirrorCorridor) {
   scene.shapes[1].material = id;
   set_camera(scene, {0.1f, -0.2f, 0.5f}, {1, 0, -0.1f}, 70, 24, 24);
   finish(scene);
-  for (const char* integrator : {"path", "bdpt"}) {
+  for (const char* integrator : {"path", "bdpt", "guided-bdpt"}) {
     const Picture p = image_of(scene, integrator, 16);
     EXPECT_GT(sum_of(p), 0) << integrator;
   }

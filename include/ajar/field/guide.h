@@ -3,22 +3,30 @@
 // alike.
 #pragma once
 
+#include "ajar/core/sampler.h"
+#include "ajar/field/fields.h"
 #include "ajar/scene/bsdf.h"
 #include "ajar/scene/geometry.h"
 
 namespace ajar {
 
 /// Everything that scatters at one vertex. Built once per vertex by make_guide; world directions, unit, away from the
-/// surface. mix is the share g of the learned field in M5; 0 leaves the bsdf alone and costs nothing.
+/// surface. mix is the share g of the learned field in (G4); 0 leaves the bsdf alone and costs nothing.
 struct Guide {
   Frame frame;       ///< shading frame, turned as twosided, bump and normal maps asked
   Vec3 ng{0, 0, 1};  ///< geometric normal on the shading normal's side
   Vec3 wo{0};        ///< world direction to the previous vertex
   Vec3 wo_local{0};
-  float adjoint = 1;     ///< |wo.ns| / |wo.ng|: half of the shading-normal correction (Veach 1997, equation 5.19)
-  bool bent = false;     ///< the shading normal differs from the geometric one
-  bool blocked = false;  ///< the normals disagree about the side of wo: nothing scatters
-  float mix = 0;
+  float adjoint = 1;         ///< |wo.ns| / |wo.ng|: half of the shading-normal correction (Veach 1997, equation 5.19)
+  bool bent = false;         ///< the shading normal differs from the geometric one
+  bool blocked = false;      ///< the normals disagree about the side of wo: nothing scatters
+  Side side = Side::camera;  ///< whose subpath this is: Q guides the camera's, W the light's
+  const Fields* fields = nullptr;  ///< null: unguided
+  uint32_t cell = none;
+  CellKey missing = 0;  ///< the cell that should have been found
+  float mix = 0;        ///< g of (G4) with which this side's field is mixed in
+  float mix_other = 0;  ///< with which the other side mixes its field in here
+  float back = 0;       ///< density with which the other side's field, alone, goes to wo from here
   Bsdf bsdf;
 };
 
@@ -38,16 +46,24 @@ struct GuideSample {
   bool delta = false;
 };
 
-/// Resolves the material at the surface for a viewer in direction wo.
-void make_guide(const Scene& scene, const Surface& surface, const Vec3& wo, Guide& out);
+/// Resolves the material at the surface for a viewer in direction wo, and finds the cell. fields may be null.
+void make_guide(const Scene& scene, const Fields* fields, Side side, const Surface& surface, const Vec3& wo,
+                Guide& out);
 /// Whether a direction that is not a delta event can leave here.
 inline bool connectable(const Guide& guide) { return guide.bsdf.has_smooth && !guide.blocked; }
 /// False where evaluate towards w, of any length, is sure to be black; quick.
 inline bool may_scatter(const Guide& guide, const Vec3& w) {
   return !guide.bsdf.opaque || glm::dot(guide.frame.n, w) > 0;
 }
+/// What a subpath of throughput beta that arrives at a vertex is expected to bring, by the field of its side: beta
+/// times the radiance (importance) that the vertex scatters, as luminance. 0 where the fields do not know.
+struct Promise {
+  float all = 0;
+  float beyond = 0;  ///< without what next-event estimation (the lens's connection) brings at the vertex itself
+};
+Promise promise(const Guide& guide, const Rgb& beta);
 /// Whether sample reads u_lobe.
-inline bool chooses(const Guide& guide) { return guide.bsdf.chooses; }
+inline bool chooses(const Guide& guide) { return guide.bsdf.chooses || guide.mix > 0; }
 GuideEval evaluate(const Guide& guide, const Vec3& wi, Mode mode);
 bool sample(const Guide& guide, float u_lobe, const Vec2& u, Mode mode, GuideSample& out);
 

@@ -29,6 +29,7 @@ struct Film {
   std::vector<glm::dvec3> half_sum;    ///< of (camera + splat) over even passes: one of two independent halves
   std::vector<glm::dvec3> square_sum;  ///< of (camera + splat) per pass
   uint32_t passes = 0;                 ///< finished
+  uint32_t dropped = 0;                ///< passes before those, no longer in the sums; even
   uint32_t chunks = 0;                 ///< of the pass at work that are done
 
   size_t pixels() const { return size_t(width) * size_t(height); }
@@ -46,6 +47,8 @@ inline double spp_of(const Film& film) { return film.passes + double(film.chunks
 Film make_film(const Camera& camera, const Filter& filter, bool splats);
 /// Adds the splats of consecutive chunks, in their order, filtered. The result does not depend on threads.
 void merge(Film& film, const std::vector<std::vector<Splat>>& chunks);
+/// Forgets all finished passes: those to come go on with their numbers.
+void drop_passes(Film& film);
 /// Closes the pass at work.
 void finish_pass(Film& film);
 /// Linear RGB estimate; includes the chunks of the pass at work that are done.

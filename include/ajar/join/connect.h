@@ -18,14 +18,18 @@ struct Candidate {
   End light, camera;
   Shares shares;
   Vec2 raster{0};  ///< t = 1: where it lands
+  Rgb arrives{0};  ///< at the last vertex of a subpath, from the light or lens itself: s = 0 radiance, s = 1
+                   ///< irradiance, t = 1 importance (raster area per area); divided by densities, without visibility
 };
 
 /// s = 0: the camera subpath's last vertex is on a light. surface is that of the vertex.
-bool join_hit(const Scene& scene, const Subpath& camera, const Surface& surface, Candidate& out);
+bool join_hit(const Scene& scene, const Fields* fields, const Subpath& camera, const Surface& surface, Candidate& out);
 /// s = 0: the camera subpath left the scene in the walk's direction; one infinite light.
-bool join_escape(const Scene& scene, uint32_t light, const Subpath& camera, const Walk& walk, Candidate& out);
+bool join_escape(const Scene& scene, const Fields* fields, uint32_t light, const Subpath& camera, const Walk& walk,
+                 Candidate& out);
 /// s = 1: next-event estimation at the camera subpath's vertex t - 1. light_paths as in WalkOptions, also below.
-bool join_light(const Scene& scene, Sampler& sampler, const Subpath& camera, int t, double light_paths, Candidate& out);
+bool join_light(const Scene& scene, const Fields* fields, Sampler& sampler, const Subpath& camera, int t,
+                double light_paths, Candidate& out);
 /// s >= 2, t >= 2: the vertices s - 1 and t - 1. share is the light walk's first_share.
 bool join_vertices(const Subpath& light, int s, double share, const Subpath& camera, int t, double light_paths,
                    Candidate& out);

@@ -22,7 +22,11 @@ struct WalkOptions {
   int max_edges = 1 << 20;  ///< of a whole path from light to camera
   int roulette_from = 5;    ///< edges that are traced without roulette
   Heuristic heuristic = Heuristic::power;
-  double light_paths = 1;  ///< light subpaths that splat to the film, for each camera sample of a pixel
+  float window = 5;                ///< guided subpaths that promise less than 1 / window of their start face roulette
+  int sure_vertices = 64;          ///< beyond, no subpath is sure to go on
+  const Fields* fields = nullptr;  ///< guide the subpaths; null: unguided
+  double inner_share = 1;          ///< Shares::inner of all joins (join/mis.h)
+  double light_paths = 1;          ///< light subpaths that splat to the film, for each camera sample of a pixel
 };
 
 /// The ray that will find the next vertex, and what that vertex needs to know about its making.
@@ -37,6 +41,7 @@ struct Walk {
   double sum = 0;           ///< S of the vertex that the ray leaves (R2); set by step, also when the ray escapes
   double first_share = 1;   ///< v_1 of (R2), not raised
   Rgb survival{1};          ///< throughput since the start, for roulette
+  float promise = 0;        ///< what the fields expected the subpath to bring when it began; 0: they do not know
 };
 
 /// One of the scene's lights (there is at least one), and the probability of its choice. A single light costs no
@@ -59,20 +64,35 @@ inline bool choose_light_point(const Scene& scene, const Guide& guide, const Vec
   return sample_direct(scene, light, p, sampler.at(place), out);
 }
 
+/// Probability that a subpath of so many vertices goes on. Where the field knows what is still to be expected of it,
+/// that decides, against what was expected at its start (promised: set here the first time that it is known); elsewhere
+/// its throughput.
+inline float keep(const WalkOptions& options, const Guide& guide, int vertices, const Rgb& beta, const Rgb& survival,
+                  float& promised) {
+  if (options.fields) {
+    const Promise p = promise(guide, beta);
+    if (!(promised > 0)) promised = p.all;
+    const float most = vertices > options.sure_vertices ? 0.95f : 1;
+    if (p.beyond > 0 && promised > 0) return std::clamp(options.window * p.beyond / promised, 0.05f, most);  // (G6)
+  }
+  return vertices > options.roulette_from ? std::min(max_component(survival), 0.95f) : 1;
+}
+
 /// Samples the direction in which a path goes on, beta and survival times its weight; with roulette only some go on.
 /// False where the path ends. Both take one pair of numbers, but compute what they use alone.
-inline bool choose_direction(const Guide& guide, Mode mode, bool roulette, Sampler& sampler, Rgb& beta, Rgb& survival,
-                             GuideSample& out) {
+inline bool choose_direction(const Guide& guide, Mode mode, const WalkOptions& options, int vertices, Sampler& sampler,
+                             Rgb& beta, Rgb& survival, float& promised, GuideSample& out) {
   const uint32_t lobe_and_roulette = sampler.skip();
   const float u_lobe = chooses(guide) ? sampler.at(lobe_and_roulette).x : 0;
+  const Rgb arrived = beta;
   if (!sample(guide, u_lobe, sampler.next2(), mode, out) || is_black(out.weight)) return false;
   beta *= out.weight;
   survival *= out.weight * (mode == Mode::radiance ? sqr(out.eta) : 1.0f);
-  if (!roulette) return true;
-  const float keep = std::min(max_component(survival), 0.95f);
-  if (!(sampler.at(lobe_and_roulette).y < keep)) return false;
-  beta /= keep;
-  survival /= keep;
+  const float goes_on = keep(options, guide, vertices, arrived, survival, promised);
+  if (goes_on == 1) return true;
+  if (!(sampler.at(lobe_and_roulette).y < goes_on)) return false;
+  beta /= goes_on;
+  survival /= goes_on;
   return true;
 }
 
@@ -80,7 +100,7 @@ inline bool choose_direction(const Guide& guide, Mode mode, bool roulette, Sampl
 void start_camera(const Scene& scene, const WalkOptions& options, const Vec2& raster, const Vec2& lens,
                   Subpath& subpath, Walk& walk);
 /// Starts at a light; false where there is none or it emits nothing here.
-bool start_light(const Scene& scene, Sampler& sampler, Subpath& subpath, Walk& walk);
+bool start_light(const Scene& scene, const WalkOptions& options, Sampler& sampler, Subpath& subpath, Walk& walk);
 /// Traces the ray and adds the vertex that it hits; false when it escapes. surface is what was hit.
 bool step(const Scene& scene, const Accel& accel, const WalkOptions& options, Subpath& subpath, Walk& walk,
           Surface& surface);
@@ -111,6 +131,7 @@ inline bool visible(const Accel& accel, const Segment& s) { return !accel.occlud
 
 /// Density of next-event estimation from x over that of emission for the same point of a light, along unit wi (x to
 /// light).
-double direct_share(const Scene& scene, const LightPoint& point, const Vec3& x, const Vec3& wi, double distance2);
+double direct_share(const Scene& scene, const Fields* fields, const LightPoint& point, const Vec3& x, const Vec3& wi,
+                    double distance2);
 
 }  // namespace ajar

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "ajar/field/learn.h"
 #include "ajar/path/walk.h"
 
 namespace ajar {
@@ -20,6 +21,7 @@ struct RenderOptions {
   int roulette_depth = 5;  ///< edges of a subpath that are traced without roulette
   Heuristic heuristic = Heuristic::power;
   SamplerKind sampler = SamplerKind::sobol;
+  LearnOptions learn;       ///< guided integrators only
   bool techniques = false;  ///< keep an image of every (s, t)
 };
 
@@ -27,5 +29,7 @@ struct RenderOptions {
 inline constexpr int deepest = 4096;
 
 std::vector<std::string> integrator_names();
+/// Whether it learns fields; throws Error for an unknown integrator.
+bool is_guided(const std::string& integrator);
 
 }  // namespace ajar

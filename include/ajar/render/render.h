@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "ajar/film/pyramid.h"
+#include "ajar/render/learning.h"
 #include "ajar/render/options.h"
 
 namespace ajar {
@@ -13,7 +14,8 @@ struct RenderStats {
   Counters counters;
   uint64_t rejected = 0;                ///< values dropped for not being finite and non-negative (law 6)
   std::vector<std::string> replay;      ///< what replays the first of them
-  double seconds = 0, cpu_seconds = 0;  ///< of tracing, merging included; sums over resumed parts
+  double seconds = 0, cpu_seconds = 0;  ///< of tracing, merging and learning; sums over resumed parts
+  double learn_seconds = 0, learn_cpu_seconds = 0;  ///< of these, learning between passes
 };
 
 /// Everything that a render needs in order to go on, and all that it has made.
@@ -21,6 +23,7 @@ struct RenderState {
   Film film;
   Pyramid pyramid;  ///< filled when RenderOptions::techniques
   RenderStats stats;
+  Learning learning;  ///< of guided integrators
 };
 
 /// Seen between batches of chunks, a few times a second at most for large images; return false to stop. May be empty.

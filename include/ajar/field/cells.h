@@ -1,0 +1,50 @@
+// Enters: points on surfaces with the side that they are seen from.
+// Leaves: the cell of a point: a cube of space and a range of normals. Cells nest; a cell that was divided answers only
+// where its parts are not known.
+#pragma once
+
+#include <vector>
+
+#include "ajar/core/frame.h"
+#include "ajar/scene/surface.h"
+
+namespace ajar {
+
+/// Name of a cell: level, direction of the normal (26 bins), integer coordinates at that level; never 0.
+using CellKey = uint64_t;
+
+inline constexpr int most_cell_levels = 10;
+
+/// Cells of all levels in one open hash table.
+struct CellTable {
+  struct Slot {
+    CellKey key = 0;
+    uint32_t cell = none;
+    bool divided = false;
+  };
+  Vec3 origin{0};
+  float width = 1;          ///< edge of the cubes of level 0
+  std::vector<Slot> slots;  ///< a power of two of them
+  size_t used = 0;
+
+  float edge(int level) const { return std::ldexp(width, -level); }
+};
+
+/// Where a point is: its cell, none if unknown.
+struct Place {
+  uint32_t cell = none;
+  CellKey missing = 0;  ///< the cell that ought to be there in place of it; 0 if nothing is missing
+};
+
+CellTable make_cell_table(const Vec3& center, float radius);
+/// n: unit normal on the side that matters.
+Place find(const CellTable& table, const Vec3& p, const Vec3& n);
+void insert(CellTable& table, CellKey key, uint32_t cell);
+/// The cell of this key, none if there is none.
+uint32_t cell_of(const CellTable& table, CellKey key);
+void set_divided(CellTable& table, CellKey key);
+int level_of(CellKey key);
+/// Key of the cell that contains this one, 0 at level 0.
+CellKey parent_of(CellKey key);
+
+}  // namespace ajar

@@ -1,0 +1,56 @@
+// Enters: what learn (learn.h) made of the passes so far.
+// Leaves: the learned fields Q (incident radiance, guides camera subpaths) and W (incident importance, guides light
+// subpaths) over cells of the scene's surfaces. Constant while a pass reads them.
+#pragma once
+
+#include "ajar/field/cells.h"
+#include "ajar/field/strata.h"
+
+namespace ajar {
+
+enum class Side : uint8_t;
+
+/// One field in one cell. Values are means over the cell; radiance for Q; for W importance, in pixels per area where
+/// radiance is power per area (notation.md).
+struct FieldCell {
+  uint32_t root = none;  ///< of its strata
+  float direct = 0;  ///< irradiance by light that next-event estimation brings (Q), or importance of the lens itself
+                     ///< (W); not in the strata
+  float total = 0;   ///< irradiance: direct and over all strata
+  float mix = 0;     ///< g of (G4) for a diffuse surface: how much the strata are trusted
+  float visits = 0;  ///< vertices of subpaths of the side that it guides, per area of the cell and path
+};
+
+/// One learned field: strata of all cells. Hot: what sampling reads. mean and weight stand beside the nodes.
+struct Field {
+  std::vector<FieldCell> cells;
+  std::vector<StrataNode> nodes;
+  std::vector<float> mean;    ///< 16 per node: what the stratum's field is
+  std::vector<float> weight;  ///< 16 per node: how much evidence stands behind it, in records of typical weight
+  double unit = 1;            ///< a typical value, from the scene's power and size
+};
+
+struct Cell {
+  CellKey key = 0;
+  Frame frame;     ///< its strata are about frame.n
+  float seen = 0;  ///< vertices since it was made
+};
+
+struct Fields {
+  CellTable table;
+  std::vector<Cell> cells;
+  Field q, w;
+  uint32_t generation = 0;  ///< how often it was learned
+
+  const Field& of(Side side) const;
+};
+
+/// Density per solid angle of the field's strata in a cell towards unit world direction w: 0 below the cell's horizon.
+float pdf(const Fields& fields, const Field& field, uint32_t cell, const Vec3& w);
+/// Draws a unit world direction in proportion to the field times the cosine at the cell; leaves its density per solid
+/// angle.
+Vec3 sample(const Fields& fields, const Field& field, uint32_t cell, const Vec2& u, float& pdf);
+/// Bytes of all that is learned.
+size_t bytes(const Fields& fields);
+
+}  // namespace ajar

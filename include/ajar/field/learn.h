@@ -1,0 +1,31 @@
+// Enters: fields and what passes recorded through them.
+// Leaves: the next fields. The one place where fields change (law 1).
+#pragma once
+
+#include "ajar/field/training.h"
+#include "ajar/scene/scene.h"
+
+namespace ajar {
+
+/// Whose subpaths the fields guide. Both fields are learned in any case, and both tell roulette what to expect.
+enum class Guided : uint8_t { both, camera, light };
+
+struct LearnOptions {
+  size_t memory = size_t(8) << 20;  ///< bytes that fields may take
+  float divide_cell = 600;          ///< vertices after which a cell is divided
+  float divide_stratum = 0.03f;     ///< share of its cell's field above which a stratum is divided
+  float trust = 32;                 ///< records after which half of the largest mix is given to the strata
+  float mix = 0.8f;                 ///< largest g of (G4)
+  float forget = 0.5f;              ///< share of older evidence that is kept
+  Guided guided = Guided::both;
+};
+
+/// Fields that know nothing: every look-up finds no cell.
+Fields start_fields(const Scene& scene, double pixels);
+/// paths: pairs of camera and light subpaths that were recorded.
+Fields learn(const Fields& fields, const Training& training, const Sightings& sightings, double paths,
+             const LearnOptions& options);
+/// Takes the field away from the side that is not to be guided: its mix is 0.
+void restrict_to(Fields& fields, Guided guided);
+
+}  // namespace ajar

@@ -1,0 +1,62 @@
+// Enters: directions above a cell of a field.
+// Leaves: the share of the field in each stratum of directions, as a tree that is fine where the field is strong:
+// sample and density.
+#pragma once
+
+#include <bit>
+#include <vector>
+
+#include "ajar/core/vec.h"
+
+namespace ajar {
+
+/// Sixteen strata, 4 x 4, of a square of directions; each may be divided again by a node of its own. Shares are
+/// cumulative sums in steps of 2^-16.
+struct StrataNode {
+  uint16_t before[16] = {};  ///< share of the strata before this one; before[0] = 0
+  uint16_t divided = 0;      ///< bit i: stratum i has a node
+  uint32_t children = 0;     ///< index of the first of these nodes; they follow each other
+
+  uint32_t child(int i) const { return children + uint32_t(std::popcount(unsigned(divided & ((1u << i) - 1)))); }
+  bool is_divided(int i) const { return (divided >> i) & 1; }
+  /// Share of stratum i, in steps of 2^-16.
+  uint32_t steps(int i) const { return (i == 15 ? 65536u : before[i + 1]) - before[i]; }
+};
+
+/// Levels of nodes at most: 4^5 = 1024 strata across the hemisphere.
+inline constexpr int most_levels = 5;
+
+/// The unit square over the hemisphere about +z: the unit disk of the direction's (x, y), stretched along its radii to
+/// the square [-1,1]^2. Without trigonometry, so that both ways are exact to rounding.
+inline Vec2 to_square(const Vec3& local) {
+  const float r2 = local.x * local.x + local.y * local.y, m = std::max(std::abs(local.x), std::abs(local.y));
+  if (m == 0) return Vec2(0.5f);
+  const float stretch = std::sqrt(r2) / m;
+  return glm::clamp(Vec2(local) * (0.5f * stretch) + 0.5f, Vec2(0), Vec2(one_minus_epsilon));
+}
+inline Vec3 from_square(const Vec2& square) {
+  const Vec2 a = 2.0f * square - 1.0f;
+  const float l2 = glm::dot(a, a), m = std::max(std::abs(a.x), std::abs(a.y));
+  const float shrink = l2 > 0 ? m / std::sqrt(l2) : 0;
+  return {a.x * shrink, a.y * shrink, safe_sqrt(1 - m * m)};
+}
+/// Area of the unit square per solid angle at a direction.
+inline float square_density(const Vec3& local) {
+  const float x2 = local.x * local.x, y2 = local.y * local.y, m2 = std::max(x2, y2);
+  return local.z * (m2 > 0 ? (x2 + y2) / m2 : 1) * 0.25f;
+}
+
+/// Density over the unit square of the tree under node root.
+float density(const std::vector<StrataNode>& nodes, uint32_t root, const Vec2& at);
+/// Draws a point of the unit square; u in [0,1)^2. Leaves its density.
+Vec2 sample(const std::vector<StrataNode>& nodes, uint32_t root, const Vec2& u, float& density);
+
+/// Stratum of a point and the point within it, one level down.
+inline int descend(Vec2& at) {
+  at *= 4.0f;
+  const int x = int(at.x), y = int(at.y);
+  at -= Vec2(x, y);
+  return 4 * y + x;
+}
+
+}  // namespace ajar

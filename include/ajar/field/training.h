@@ -1,0 +1,46 @@
+// Enters: what the paths of a pass saw.
+// Leaves: sums per cell and stratum, in integers, so that threads may add in any order and the sums are the same.
+#pragma once
+
+#include <atomic>
+#include <unordered_map>
+
+#include "ajar/field/fields.h"
+
+namespace ajar {
+
+/// What a cell that does not exist yet was seen with.
+struct Sighting {
+  int64_t count = 0;
+  glm::i64vec3 normal{0};  ///< sum, in steps of 2^-12
+};
+using Sightings = std::unordered_map<CellKey, Sighting>;
+
+/// Sums for one field since it was last learned.
+struct Tallies {
+  std::vector<int64_t> value;            ///< 16 per node: weight times value, in fixed point
+  std::vector<int64_t> weight;           ///< 16 per node
+  std::vector<int64_t> direct;           ///< per cell
+  std::vector<int64_t> directs, visits;  ///< per cell: how many
+};
+
+struct Training {
+  Tallies q, w;
+
+  Tallies& of(Side side);
+};
+
+Training start_training(const Fields& fields);
+
+/// A segment seen from its cell: direction w (unit, world), the field's value there, and the record's weight:
+/// the reciprocal of the density with which such segments are made, in units of that of a cosine lobe.
+void record(const Fields& fields, const Field& field, Tallies& tallies, uint32_t cell, const Vec3& w, float value,
+            float weight);
+/// Irradiance (or the lens's importance) that a vertex in the cell got from next-event estimation; zeros too.
+void record_direct(const Field& field, Tallies& tallies, uint32_t cell, float value);
+void record_visit(Tallies& tallies, uint32_t cell);
+void record_missing(Sightings& sightings, CellKey key, const Vec3& n);
+/// Adds what one thread saw to what all saw.
+void gather(Sightings& to, Sightings& from);
+
+}  // namespace ajar

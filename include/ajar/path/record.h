@@ -1,0 +1,13 @@
+// Enters: a finished subpath.
+// Leaves: what it teaches the fields, as records in a training.
+#pragma once
+
+#include "ajar/field/training.h"
+#include "ajar/path/vertex.h"
+
+namespace ajar {
+
+/// Every segment between two vertices that scatter teaches four entries, whoever traced it: Q and W at either end (M4).
+void record_subpath(const Fields& fields, Training& training, Sightings& sightings, const Subpath& subpath, Side side);
+
+}  // namespace ajar

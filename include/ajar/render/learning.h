@@ -1,0 +1,38 @@
+// Enters: passes of a guided integrator.
+// Leaves: the fields that the next pass reads. The one place where what was recorded flows back (law 1).
+#pragma once
+
+#include "ajar/field/learn.h"
+#include "ajar/field/store.h"
+#include "ajar/film/film.h"
+
+namespace ajar {
+
+/// Fields with what was recorded through them since they were learned.
+struct Learning {
+  Fields fields;
+  Training training;
+  Sightings sightings;
+  uint32_t passes = 0;  ///< recorded since
+  uint32_t first = 0;   ///< number of the render's first pass; even; not 0 where it goes on from stored fields
+};
+
+/// After each of the first passes the fields are learned from all paths, and what these passes saw through young fields
+/// is dropped from the image at the end of them; from then on one path in rare_records is recorded, and passes between
+/// lessons double.
+inline constexpr uint32_t young_generations = 8, rare_records = 8;
+
+Learning start_learning(const Scene& scene, const Film& film);
+/// Puts stored fields in place of those that know nothing. Passes are numbered on from those that the fields were
+/// learned from: a pass guided by what its own numbers taught would be biased. Call before the first pass.
+void go_on_from(StoredFields stored, const LearnOptions& options, Learning& learning, Film& film);
+/// The fields as they are now, with the numbers that they have seen.
+StoredFields stored_fields(const Scene& scene, const Learning& learning, const Film& film);
+/// Passes that were traced and dropped.
+inline uint32_t dropped_passes(const Learning& learning, const Film& film) { return film.dropped - learning.first; }
+/// Whether the subpaths of this pixel are recorded in this pass.
+bool is_recorded(const Learning& learning, uint64_t pixel, uint32_t pass);
+/// Call after every finished pass. Drops the young passes from the film when the time has come.
+void end_pass(Learning& learning, const LearnOptions& options, Film& film);
+
+}  // namespace ajar

@@ -1,0 +1,24 @@
+// Enters: what the user typed.
+// Leaves: what it means; Error, with the option and a right example, where it means nothing.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ajar/scene/camera.h"
+#include "ajar/scene/load.h"
+
+namespace ajar {
+
+/// WIDTHxHEIGHT in place of the camera's own size and crop window.
+void set_size(Camera& camera, const std::string& text);
+/// defines: name=value.
+LoadOptions load_options(const std::vector<std::string>& defines, bool lenient);
+/// 8M and the like; option names it in messages.
+size_t parse_bytes(const std::string& option, const std::string& text);
+/// Throws where the folder of a file that is to be written is missing: before the work rather than after it.
+void check_writable(const std::string& path);
+/// The same for a file that is written as it is named: a folder of that name is in its way.
+void check_file(const std::string& path);
+
+}  // namespace ajar

@@ -1,0 +1,70 @@
+// ajar fields: statistics of a file of learned fields, and pictures of them.
+
+#include "ajar/report/fields.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+
+#include "ajar/core/error.h"
+#include "arguments.h"
+#include "commands.h"
+
+namespace ajar {
+namespace {
+
+struct Arguments {
+  std::string file, scene, out, size;
+  std::vector<std::string> defines;
+};
+
+void write_pictures(const Arguments& a, const Scene& scene, const Fields& fields) {
+  const Accel accel(scene);
+  const auto write = [&](const char* name, const Picture& picture, const std::string& legend) {
+    const std::string path = (std::filesystem::path(a.out) / name).string();
+    write_png(path, picture);
+    fmt::print("{}: {}\n", path, legend);
+  };
+  const auto write_totals = [&](const char* name, Side side, const char* unit) {
+    const FalseColour f = picture_totals(scene, accel, fields, side);
+    write(name, f.picture, fmt::format("black {:.3g}, white {:.3g} {}, logarithmic", f.low, f.high, unit));
+  };
+  write("cells.png", picture_cells(scene, accel, fields), "a colour for every cell");
+  write_totals("irradiance.png", Side::camera, "W/m^2");
+  write_totals("importance.png", Side::light, "pixels/m^2");
+  write("strata-q.png", picture_strata(scene, accel, fields, Side::camera), "where light comes from");
+  write("strata-w.png", picture_strata(scene, accel, fields, Side::light), "where importance comes from");
+}
+
+void run(const Arguments& a) {
+  if (a.scene.empty() && !(a.out.empty() && a.size.empty() && a.defines.empty()))
+    throw Error("-o, --size and -D are for pictures, and these need the scene: add --scene SCENE.xml");
+  if (!a.scene.empty() && !std::filesystem::is_directory(a.out))
+    throw Error(fmt::format("-o {}: no such folder; name one for the pictures", a.out));
+  if (a.scene.empty()) {
+    fmt::print("{}", describe(load_fields(a.file)));
+    return;
+  }
+  Scene scene = load_scene(a.scene, load_options(a.defines, false));
+  if (!a.size.empty()) set_size(scene.camera, a.size);
+  const StoredFields stored = load_fields(a.file, scene_key(scene));
+  fmt::print("{}", describe(stored));
+  write_pictures(a, scene, stored.fields);
+}
+
+}  // namespace
+
+void add_fields(CLI::App& app) {
+  CLI::App* c = app.add_subcommand("fields", "Tell what a file of learned fields holds, with pictures on request");
+  const auto a = std::make_shared<Arguments>();
+  c->add_option("file", a->file, "file that ajar render --save-fields wrote")->required();
+  c->add_option("--scene", a->scene, "Mitsuba XML scene that they were learned in, for pictures");
+  c->add_option("-o,--out", a->out, "folder for cells.png, irradiance.png, importance.png, strata-q.png, strata-w.png");
+  c->add_option("--size", a->size, "WIDTHxHEIGHT of the pictures instead of the scene's");
+  c->add_option("-D", a->defines, "name=value: a parameter of the scene")->allow_extra_args(false);
+  c->callback([a] { run(*a); });
+}
+
+}  // namespace ajar

@@ -1,0 +1,102 @@
+#include "ajar/core/bytes.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cstring>
+#include <filesystem>
+
+#include "ajar/core/error.h"
+
+namespace ajar {
+namespace {
+
+constexpr size_t magic_size = sizeof FileKind::magic - 1;
+
+}  // namespace
+
+uint64_t checksum(const void* data, size_t n, uint64_t sum) {
+  const char* at = static_cast<const char*>(data);
+  uint64_t word = 0;
+  // Every step can be undone, given the word: two runs that differ in one word never meet again.
+  const auto add = [&](uint64_t w) { sum = std::rotl(sum ^ w, 29) * 0x9e3779b97f4a7c15ull + 1; };
+  for (; n >= sizeof word; n -= sizeof word, at += sizeof word) {
+    std::memcpy(&word, at, sizeof word);
+    add(word);
+  }
+  word = 0;
+  if (n > 0) {
+    std::memcpy(&word, at, n);
+    add(word);
+  }
+  return sum;
+}
+
+void Writer::bytes(const void* data, size_t n) {
+  if (n == 0) return;
+  out.write(static_cast<const char*>(data), std::streamsize(n));
+  sum = checksum(data, n, sum);
+}
+
+Reader::Reader(const std::string& file, const FileKind& file_kind) : path(file), kind(file_kind) {
+  if (!std::filesystem::is_regular_file(path))
+    throw Error(fmt::format("{}: no such {}; {}", path, kind.name, kind.make));
+  in.open(path, std::ios::binary);
+  if (!in) throw Error(fmt::format("{}: this {} cannot be read; are you allowed to?", path, kind.name));
+  left = std::filesystem::file_size(path);
+  char found[magic_size] = {};
+  if (left >= magic_size) bytes(found, magic_size);
+  if (std::memcmp(found, kind.magic, magic_size) != 0)
+    throw Error(fmt::format("{}: not a {} of this version of ajar; {}", path, kind.name, kind.cure));
+}
+
+void Reader::require(bool holds) const {
+  if (!holds) throw Error(fmt::format("{}: {} is damaged; {}", path, kind.name, kind.cure));
+}
+
+void Reader::bytes(void* data, size_t n) {
+  if (n == 0) return;
+  require(n <= left && in.read(static_cast<char*>(data), std::streamsize(n)));
+  left -= n;
+  sum = checksum(data, n, sum);
+}
+
+size_t Reader::count(size_t bytes_each) {
+  uint64_t n = 0;
+  value(n);
+  require(n <= left / bytes_each);
+  return size_t(n);
+}
+
+void Reader::text(std::string& s) {
+  s.resize(count(1));
+  bytes(s.data(), s.size());
+}
+
+void Reader::finish() {
+  const uint64_t expected = sum;
+  uint64_t stored = 0;
+  value(stored);
+  require(stored == expected && left == 0);
+}
+
+void write_file(const std::string& path, const FileKind& kind, const std::function<void(Writer&)>& write) {
+  const std::string aside = path + ".tmp";
+  std::error_code failed;
+  {
+    std::ofstream out(aside, std::ios::binary);
+    Writer w{out};
+    w.bytes(kind.magic, magic_size);
+    write(w);
+    w.value(uint64_t(w.sum));
+    out.close();
+    if (!out) failed = std::make_error_code(std::errc::io_error);
+  }
+  if (!failed) std::filesystem::rename(aside, path, failed);
+  if (!failed) return;
+  std::error_code ignored;
+  std::filesystem::remove(aside, ignored);
+  throw Error(fmt::format("{}: cannot write the {}; is the folder there and the disk not full?", path, kind.name));
+}
+
+}  // namespace ajar

@@ -1,0 +1,30 @@
+#include "ajar/field/fields.h"
+
+#include "ajar/core/sampler.h"
+
+namespace ajar {
+
+const Field& Fields::of(Side side) const { return side == Side::camera ? q : w; }
+
+float pdf(const Fields& fields, const Field& field, uint32_t cell, const Vec3& w) {
+  const Vec3 local = fields.cells[cell].frame.to_local(w);
+  if (!(local.z > 0)) return 0;
+  return density(field.nodes, field.cells[cell].root, to_square(local)) * square_density(local);
+}
+
+Vec3 sample(const Fields& fields, const Field& field, uint32_t cell, const Vec2& u, float& pdf) {
+  float over_square;
+  const Vec2 at = sample(field.nodes, field.cells[cell].root, u, over_square);
+  const Vec3 local = from_square(at);
+  pdf = over_square * square_density(local);
+  return fields.cells[cell].frame.to_world(local);
+}
+
+size_t bytes(const Fields& f) {
+  const auto of = [](const Field& x) {
+    return x.cells.size() * sizeof(FieldCell) + x.nodes.size() * (sizeof(StrataNode) + 32 * sizeof(float));
+  };
+  return f.table.slots.size() * sizeof(CellTable::Slot) + f.cells.size() * sizeof(Cell) + of(f.q) + of(f.w);
+}
+
+}  // namespace ajar

@@ -1,0 +1,285 @@
+#include "ajar/field/learn.h"
+
+#include <tbb/parallel_for.h>
+
+#include "ajar/core/frame.h"
+#include "fixed.h"
+
+namespace ajar {
+namespace {
+
+// Area of the projected hemisphere under a stratum: [corner, corner + width] of the unit square.
+float stratum_area(const Vec2& corner, float width) {
+  float sum = 0;
+  for (int i = 0; i < 4; ++i) {
+    const Vec2 a = 2.0f * (corner + width * Vec2(0.25f + 0.5f * float(i & 1), 0.25f + 0.5f * float(i >> 1))) - 1.0f;
+    const float m = std::max(std::abs(a.x), std::abs(a.y));
+    sum += m * m / glm::dot(a, a);
+  }
+  return sum * width * width;  // x 4 for the square's area, / 4 samples
+}
+
+// A tree at work: children by index into the same vector, values at leaves.
+struct Node {
+  float mean[16], weight[16], mass[16];
+  int32_t child[16];
+};
+
+struct Work {
+  const Field* field = nullptr;
+  const Tallies* tallies = nullptr;
+  const LearnOptions* options = nullptr;
+  std::vector<Node> nodes;
+};
+
+// Old node with the evidence of its records.
+int32_t take(Work& w, uint32_t old) {
+  const int32_t at = int32_t(w.nodes.size());
+  w.nodes.emplace_back();
+  for (int i = 0; i < 16; ++i) {
+    const size_t k = 16 * size_t(old) + size_t(i);
+    if (w.field->nodes[old].is_divided(i)) {
+      const int32_t child = take(w, w.field->nodes[old].child(i));
+      w.nodes[size_t(at)].child[i] = child;
+      continue;
+    }
+    const float fresh = float(double(w.tallies->weight[k]) * weight_step),
+                kept = w.options->forget * w.field->weight[k];
+    const float sum = kept + fresh;
+    float mean = w.field->mean[k];
+    if (fresh > 0) {
+      const double value = double(w.tallies->value[k]) * value_step * w.field->unit / fresh;
+      mean += float((value - mean) * (fresh / sum));  // (G3)
+    }
+    Node& mine = w.nodes[size_t(at)];
+    mine.child[i] = -1;
+    mine.mean[i] = mean;
+    mine.weight[i] = fresh > 0 ? sum : w.field->weight[k];
+  }
+  return at;
+}
+
+// Fills the masses of a node and all below it; returns their sum.
+float weigh(std::vector<Node>& nodes, int32_t at, const Vec2& corner, float width, float floor) {
+  float sum = 0;
+  for (int i = 0; i < 16; ++i) {
+    const float w = width / 4;
+    const Vec2 c = corner + w * Vec2(i & 3, i >> 2);
+    const int32_t child = nodes[size_t(at)].child[i];
+    const float mass =
+        child >= 0 ? weigh(nodes, child, c, w, floor) : (nodes[size_t(at)].mean[i] + floor) * stratum_area(c, w);
+    nodes[size_t(at)].mass[i] = mass;
+    sum += mass;
+  }
+  return sum;
+}
+
+// Divides heavy strata, joins light ones.
+void reshape(Work& w, int32_t at, int level, float total) {
+  for (int i = 0; i < 16; ++i) {
+    const float share = w.nodes[size_t(at)].mass[i] / total;
+    const int32_t child = w.nodes[size_t(at)].child[i];
+    if (child >= 0) {
+      if (share > 0.4f * w.options->divide_stratum) {
+        reshape(w, child, level + 1, total);
+        continue;
+      }
+      float mean = 0, weight = 0;
+      bool leaf = true;
+      for (int j = 0; j < 16; ++j) {
+        leaf = leaf && w.nodes[size_t(child)].child[j] < 0;
+        mean += w.nodes[size_t(child)].mean[j] / 16, weight += w.nodes[size_t(child)].weight[j];
+      }
+      if (!leaf) continue;
+      Node& mine = w.nodes[size_t(at)];
+      mine.child[i] = -1, mine.mean[i] = mean, mine.weight[i] = weight;
+    } else if (share > w.options->divide_stratum && level + 1 < most_levels && w.nodes[size_t(at)].weight[i] >= 8) {
+      const int32_t fresh = int32_t(w.nodes.size());
+      w.nodes.emplace_back();
+      Node& mine = w.nodes[size_t(at)];
+      Node& part = w.nodes.back();
+      for (int j = 0; j < 16; ++j)
+        part.mean[j] = mine.mean[i], part.weight[j] = mine.weight[i] / 16, part.child[j] = -1;
+      mine.child[i] = fresh;
+    }
+  }
+}
+
+// Writes shares in steps of 2^-16; every stratum of positive mass gets one at least.
+void quantise(const Node& from, StrataNode& to) {
+  float sum = 0;
+  for (const float m : from.mass) sum += m;
+  double before = 0;
+  uint32_t last = 0;
+  for (int i = 0; i < 16; ++i) {
+    to.before[i] = uint16_t(last);
+    before += from.mass[i];
+    const uint32_t next = sum > 0 ? uint32_t(std::lround(before / sum * 65536)) : 4096u * uint32_t(i + 1);
+    last = std::clamp(next, last + 1, 65536u - uint32_t(15 - i));
+  }
+}
+
+// A finished tree, appended: breadth first, so that the children of a node follow each other.
+struct Trees {
+  std::vector<StrataNode> nodes;
+  std::vector<float> mean, weight;
+};
+
+uint32_t append(Trees& out, const std::vector<Node>& nodes) {
+  const uint32_t root = uint32_t(out.nodes.size());
+  std::vector<int32_t> order = {0};
+  for (size_t k = 0; k < order.size(); ++k) {
+    const Node& from = nodes[size_t(order[k])];
+    StrataNode to;
+    quantise(from, to);
+    to.children = root + uint32_t(order.size());
+    for (int i = 0; i < 16; ++i) {
+      if (from.child[i] >= 0) to.divided |= uint16_t(1u << i), order.push_back(from.child[i]);
+      out.mean.push_back(from.child[i] >= 0 ? 0 : from.mean[i]);
+      out.weight.push_back(from.child[i] >= 0 ? 0 : from.weight[i]);
+    }
+    out.nodes.push_back(to);
+  }
+  return root;
+}
+
+FieldCell learn_cell(Work& w, uint32_t cell, double area, double paths, Trees& out) {
+  const FieldCell& old = w.field->cells[cell];
+  const Tallies& t = *w.tallies;
+  FieldCell next = old;
+  w.nodes.clear();
+  take(w, old.root);
+  const float bare = weigh(w.nodes, 0, Vec2(0), 1, 0);
+  const float floor = 0.03f * bare / pi;
+  float total = weigh(w.nodes, 0, Vec2(0), 1, floor);
+  if (total > 0) {
+    reshape(w, 0, 0, total);
+    total = weigh(w.nodes, 0, Vec2(0), 1, floor);
+  }
+  next.root = append(out, w.nodes);
+  if (t.directs[cell] > 0) {
+    const double mean = double(t.direct[cell]) * value_step * w.field->unit / double(t.directs[cell]);
+    next.direct = old.visits > 0 ? float(0.5 * (old.direct + mean)) : float(mean);
+  }
+  next.total = next.direct + bare;
+  float weight = 0;
+  for (const Node& n : w.nodes)
+    for (int i = 0; i < 16; ++i) weight += n.child[i] < 0 ? n.weight[i] : 0;
+  next.mix = bare > 0 ? w.options->mix * weight / (weight + w.options->trust) : 0;
+  const float seen = float(double(t.visits[cell]) / (area * paths));
+  next.visits = old.visits > 0 ? 0.5f * (old.visits + seen) : seen;
+  return next;
+}
+
+Field learn_field(const Fields& fields, const Field& field, const Tallies& tallies, double paths,
+                  const LearnOptions& options) {
+  constexpr uint32_t block = 64;
+  const uint32_t n = uint32_t(field.cells.size()), blocks = (n + block - 1) / block;
+  std::vector<Trees> trees(blocks);
+  Field next;
+  next.unit = field.unit;
+  next.cells.resize(n);
+  tbb::parallel_for(0u, blocks, [&](uint32_t b) {
+    Work work{&field, &tallies, &options, {}};
+    for (uint32_t c = b * block; c < std::min(n, (b + 1) * block); ++c) {
+      const double edge = double(fields.table.edge(level_of(fields.cells[c].key)));
+      next.cells[c] = learn_cell(work, c, edge * edge, paths, trees[b]);
+    }
+  });
+  for (uint32_t b = 0; b < blocks; ++b) {
+    const uint32_t shift = uint32_t(next.nodes.size());
+    for (StrataNode& node : trees[b].nodes) node.children += shift;
+    for (uint32_t c = b * block; c < std::min(n, (b + 1) * block); ++c) next.cells[c].root += shift;
+    next.nodes.insert(next.nodes.end(), trees[b].nodes.begin(), trees[b].nodes.end());
+    next.mean.insert(next.mean.end(), trees[b].mean.begin(), trees[b].mean.end());
+    next.weight.insert(next.weight.end(), trees[b].weight.begin(), trees[b].weight.end());
+  }
+  return next;
+}
+
+// Copies a cell's strata from another, or makes blank ones.
+void add_cell(Field& field, uint32_t from) {
+  FieldCell cell;
+  cell.root = uint32_t(field.nodes.size());
+  if (from == none) {
+    StrataNode node;
+    for (int i = 0; i < 16; ++i) node.before[i] = uint16_t(4096 * i);
+    field.nodes.push_back(node);
+    field.mean.insert(field.mean.end(), 16, 0.0f);
+    field.weight.insert(field.weight.end(), 16, 0.0f);
+  } else {
+    const FieldCell& parent = field.cells[from];
+    const uint32_t shift = cell.root - parent.root;
+    std::vector<uint32_t> order = {parent.root};
+    for (size_t k = 0; k < order.size(); ++k) {
+      StrataNode node = field.nodes[order[k]];
+      for (int i = 0; i < 16; ++i) {
+        if (node.is_divided(i)) order.push_back(node.child(i));
+        field.mean.push_back(field.mean[16 * size_t(order[k]) + size_t(i)]);
+        field.weight.push_back(0.25f * field.weight[16 * size_t(order[k]) + size_t(i)]);
+      }
+      node.children += shift;
+      field.nodes.push_back(node);
+    }
+    const uint32_t root = cell.root;
+    cell = parent;
+    cell.root = root;
+  }
+  field.cells.push_back(cell);
+}
+
+void add_cells(Fields& fields, const Sightings& sightings, const LearnOptions& options) {
+  std::vector<std::pair<CellKey, Sighting>> sorted(sightings.begin(), sightings.end());
+  std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (const auto& [key, seen] : sorted) {
+    if (bytes(fields) > options.memory) return;
+    if (seen.count < 4) continue;
+    const CellKey above = parent_of(key);
+    const uint32_t parent = above ? cell_of(fields.table, above) : none;
+    const Vec3 n = Vec3(glm::normalize(glm::dvec3(seen.normal)));
+    if (!is_finite(n)) continue;
+    const uint32_t id = uint32_t(fields.cells.size());
+    fields.cells.push_back({key, parent == none ? make_frame(n) : fields.cells[parent].frame, 0});
+    insert(fields.table, key, id);
+    add_cell(fields.q, parent);
+    add_cell(fields.w, parent);
+  }
+}
+
+}  // namespace
+
+Fields start_fields(const Scene& scene, double pixels) {
+  Fields f;
+  f.table = make_cell_table(scene.center, scene.radius);
+  double watts = 0;
+  for (uint32_t i = 0; i < scene.lights.size(); ++i) watts += power(scene, i);
+  const double area = 4 * std::numbers::pi * double(scene.radius) * double(scene.radius);
+  f.q.unit = std::max(watts, 1e-30) / (area * std::numbers::pi);
+  f.w.unit = pixels / (area * std::numbers::pi);
+  return f;
+}
+
+Fields learn(const Fields& fields, const Training& training, const Sightings& sightings, double paths,
+             const LearnOptions& options) {
+  Fields next;
+  next.generation = fields.generation + 1;
+  next.table = fields.table;
+  next.cells = fields.cells;
+  next.q = learn_field(fields, fields.q, training.q, paths, options);
+  next.w = learn_field(fields, fields.w, training.w, paths, options);
+  for (uint32_t c = 0; c < next.cells.size(); ++c) {
+    Cell& cell = next.cells[c];
+    cell.seen += float(training.q.visits[c] + training.w.visits[c]);
+    if (cell.seen > options.divide_cell && level_of(cell.key) < most_cell_levels) set_divided(next.table, cell.key);
+  }
+  add_cells(next, sightings, options);
+  restrict_to(next, options.guided);
+  return next;
+}
+
+void restrict_to(Fields& fields, Guided guided) {
+  if (guided == Guided::both) return;
+  for (FieldCell& c : (guided == Guided::camera ? fields.w : fields.q).cells) c.mix = 0;
+}
+
+}  // namespace ajar

@@ -1,0 +1,220 @@
+#include "ajar/field/store.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+
+#include "ajar/core/error.h"
+#include "ajar/scene/light.h"
+
+namespace ajar {
+namespace {
+
+constexpr FileKind fields_kind = {"AJARfd01", "file of fields", "make one with --save-fields",
+                                  "learn the fields again with --save-fields"};
+
+bool is_amount(float x) { return x >= 0 && x < infinity; }
+bool is_cell_key(CellKey key) { return level_of(key) >= 0 && level_of(key) <= most_cell_levels; }
+
+// One list of members for both ways, one value each: structs may have gaps, whose bytes mean nothing.
+template <class Io, class Part>
+void frame_members(Io& io, Part& f) {
+  io.value(f.s), io.value(f.t), io.value(f.n);
+}
+template <class Io, class Part>
+void cell_members(Io& io, Part& c) {
+  io.value(c.root), io.value(c.direct), io.value(c.total), io.value(c.mix), io.value(c.visits);
+}
+template <class Io, class Part>
+void tallies_members(Io& io, Part& t) {
+  io.array(t.value), io.array(t.weight), io.array(t.direct), io.array(t.directs), io.array(t.visits);
+}
+static_assert(sizeof(FieldCell) == 20 && sizeof(StrataNode) == 40 && sizeof(Cell) == 48 && sizeof(Sighting) == 32,
+              "a member was added or taken away: list it here and raise the versions of the files");
+
+void write(Writer& w, const Field& f) {
+  w.value(f.unit);
+  for (const FieldCell& c : f.cells) cell_members(w, c);
+  w.value(uint64_t(f.nodes.size()));
+  for (const StrataNode& n : f.nodes) w.value(n.before), w.value(n.divided), w.value(n.children);
+  w.bytes(f.mean.data(), f.mean.size() * sizeof(float));
+  w.bytes(f.weight.data(), f.weight.size() * sizeof(float));
+}
+
+bool is_sound(const StrataNode& n) {
+  if (n.before[0] != 0) return false;
+  for (int i = 0; i < 15; ++i)
+    if (n.before[i] >= n.before[i + 1]) return false;
+  return true;
+}
+
+// Whether the tree under root lies in the nodes as trees do, breadth first from its root, and shares nothing with those
+// that were claimed before.
+bool claim(const std::vector<StrataNode>& nodes, uint32_t root, std::vector<bool>& claimed) {
+  size_t known = 1;  // nodes of the tree that were seen, at root and after it
+  size_t level_end = 1;
+  int level = 0;
+  for (size_t k = 0; k < known; ++k) {
+    if (k == level_end) level_end = known, ++level;
+    const size_t at = root + k;
+    if (level >= most_levels || at >= nodes.size() || claimed[at]) return false;
+    claimed[at] = true;
+    if (nodes[at].divided != 0 && nodes[at].children != root + known) return false;
+    known += size_t(std::popcount(unsigned(nodes[at].divided)));
+  }
+  return true;
+}
+
+bool is_sound(const FieldCell& c) {
+  return is_amount(c.direct) && is_amount(c.total) && c.mix >= 0 && c.mix < 1 && is_amount(c.visits);
+}
+
+void read(Reader& r, size_t cells, Field& f) {
+  r.value(f.unit);
+  r.require(f.unit > 0 && f.unit < double(infinity));
+  f.cells.resize(cells);
+  for (FieldCell& c : f.cells) {
+    cell_members(r, c);
+    r.require(is_sound(c));
+  }
+  f.nodes.resize(r.count(sizeof(StrataNode) - 2 + 32 * sizeof(float)));
+  for (StrataNode& n : f.nodes) {
+    r.value(n.before), r.value(n.divided), r.value(n.children);
+    r.require(is_sound(n));
+  }
+  f.mean.resize(16 * f.nodes.size());
+  f.weight.resize(16 * f.nodes.size());
+  r.bytes(f.mean.data(), f.mean.size() * sizeof(float));
+  r.bytes(f.weight.data(), f.weight.size() * sizeof(float));
+  r.require(std::all_of(f.mean.begin(), f.mean.end(), is_amount) &&
+            std::all_of(f.weight.begin(), f.weight.end(), is_amount));
+  std::vector<bool> claimed(f.nodes.size());
+  for (const FieldCell& c : f.cells) r.require(claim(f.nodes, c.root, claimed));
+}
+
+bool is_sound(const Frame& f) {
+  const auto unit = [](const Vec3& v) { return std::abs(glm::dot(v, v) - 1) < 1e-3f; };
+  const auto apart = [](const Vec3& a, const Vec3& b) { return std::abs(glm::dot(a, b)) < 1e-3f; };
+  return unit(f.s) && unit(f.t) && unit(f.n) && apart(f.s, f.t) && apart(f.t, f.n) && apart(f.n, f.s);
+}
+
+void read(Reader& r, const Field& f, Tallies& t) {
+  tallies_members(r, t);
+  const size_t strata = 16 * f.nodes.size(), cells = f.cells.size();
+  r.require(t.value.size() == strata && t.weight.size() == strata && t.direct.size() == cells &&
+            t.directs.size() == cells && t.visits.size() == cells);
+}
+
+template <class T>
+uint64_t sum_of(const std::vector<T>& v, uint64_t sum) {
+  return checksum(v.data(), v.size() * sizeof(T), sum);
+}
+
+}  // namespace
+
+void write(Writer& w, const Fields& fields) {
+  w.value(fields.generation), w.value(fields.table.origin), w.value(fields.table.width);
+  // The table's divided marks go with the cells; the table itself is made anew.
+  std::vector<char> divided(fields.cells.size());
+  for (const CellTable::Slot& s : fields.table.slots)
+    if (s.key != 0) divided[s.cell] = s.divided;
+  w.value(uint64_t(fields.cells.size()));
+  for (size_t i = 0; i < fields.cells.size(); ++i) {
+    const Cell& c = fields.cells[i];
+    w.value(c.key), w.value(divided[i]), frame_members(w, c.frame), w.value(c.seen);
+  }
+  write(w, fields.q);
+  write(w, fields.w);
+}
+
+void read(Reader& r, Fields& fields) {
+  fields.table = make_cell_table(Vec3(0), 1);
+  r.value(fields.generation), r.value(fields.table.origin), r.value(fields.table.width);
+  r.require(is_finite(fields.table.origin) && is_amount(fields.table.width) &&
+            is_amount(float(1 << most_cell_levels) / fields.table.width));
+  fields.cells.resize(r.count(sizeof(CellKey)));
+  for (uint32_t i = 0; i < fields.cells.size(); ++i) {
+    Cell& c = fields.cells[i];
+    char divided = 0;
+    r.value(c.key), r.value(divided), frame_members(r, c.frame), r.value(c.seen);
+    r.require(is_cell_key(c.key) && cell_of(fields.table, c.key) == none && is_sound(c.frame) && is_amount(c.seen));
+    insert(fields.table, c.key, i);
+    if (divided) set_divided(fields.table, c.key);
+  }
+  read(r, fields.cells.size(), fields.q);
+  read(r, fields.cells.size(), fields.w);
+}
+
+void write(Writer& w, const Training& training) { tallies_members(w, training.q), tallies_members(w, training.w); }
+
+void read(Reader& r, const Fields& fields, Training& training) {
+  read(r, fields.q, training.q);
+  read(r, fields.w, training.w);
+}
+
+void write(Writer& w, const Sightings& sightings) {
+  std::vector<std::pair<CellKey, Sighting>> sorted(sightings.begin(), sightings.end());
+  std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  w.value(uint64_t(sorted.size()));
+  for (const auto& [key, seen] : sorted) w.value(key), w.value(seen.count), w.value(seen.normal);
+}
+
+void read(Reader& r, Sightings& sightings) {
+  sightings.clear();
+  for (size_t n = r.count(sizeof(CellKey) + sizeof(Sighting)); n > 0; --n) {
+    CellKey key = 0;
+    Sighting seen;
+    r.value(key), r.value(seen.count), r.value(seen.normal);
+    r.require(is_cell_key(key) && sightings.emplace(key, seen).second);
+  }
+}
+
+std::string scene_key(const Scene& scene) {
+  uint64_t triangles = 0, sum = 0;
+  for (const Mesh& m : scene.meshes)
+    triangles += m.triangles.size(), sum = sum_of(m.triangles, sum_of(m.positions, sum));
+  for (const Shape& s : scene.shapes) {
+    const uint32_t words[] = {uint32_t(s.kind), s.mesh, s.light, s.group};
+    sum = checksum(words, sizeof words, checksum(&s.to_world, sizeof s.to_world, sum));
+  }
+  for (const Instance& i : scene.instances)
+    sum = checksum(&i.group, sizeof i.group, checksum(&i.to_world, sizeof i.to_world, sum));
+  double watts = 0;
+  for (uint32_t i = 0; i < scene.lights.size(); ++i) {
+    const Light& light = scene.lights[i];
+    const double one = power(scene, i);
+    sum = checksum(&one, sizeof one, checksum(&light.kind, sizeof light.kind, sum));
+    sum = checksum(&light.to_world, sizeof light.to_world, sum);
+    sum = checksum(&light.position, sizeof light.position, sum);
+    sum = checksum(&light.direction, sizeof light.direction, sum);
+    watts += one;
+  }
+  return fmt::format(
+      "{} triangles, {} shapes, {} lights of {:.6g} W, radius {:.6g} about ({:.6g}, {:.6g}, {:.6g}), {:016x}",
+      triangles, scene.shapes.size(), scene.lights.size(), watts, scene.radius, scene.center.x, scene.center.y,
+      scene.center.z, sum);
+}
+
+void save_fields(const std::string& path, const StoredFields& stored) {
+  write_file(path, fields_kind, [&](Writer& w) {
+    w.text(stored.scene);
+    w.value(stored.passes);
+    write(w, stored.fields);
+  });
+}
+
+StoredFields load_fields(const std::string& path, const std::string& key) {
+  Reader r(path, fields_kind);
+  StoredFields stored;
+  r.text(stored.scene);
+  r.value(stored.passes);
+  if (!key.empty() && stored.scene != key)
+    throw Error(fmt::format("{}: fields of another scene ({}); this one has {}; learn its own with --save-fields", path,
+                            stored.scene, key));
+  read(r, stored.fields);
+  r.finish();
+  return stored;
+}
+
+}  // namespace ajar

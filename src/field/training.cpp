@@ -1,0 +1,70 @@
+#include "ajar/field/training.h"
+
+#include "ajar/core/sampler.h"
+#include "fixed.h"
+
+namespace ajar {
+namespace {
+
+void add(int64_t& to, int64_t amount) { std::atomic_ref<int64_t>(to).fetch_add(amount, std::memory_order_relaxed); }
+
+void resize(Tallies& t, const Field& f) {
+  t.value.assign(16 * f.nodes.size(), 0);
+  t.weight.assign(16 * f.nodes.size(), 0);
+  t.direct.assign(f.cells.size(), 0);
+  t.directs.assign(f.cells.size(), 0);
+  t.visits.assign(f.cells.size(), 0);
+}
+
+// Where the tallies of the stratum of a direction are.
+size_t find_stratum(const Field& field, uint32_t cell, const Vec3& local) {
+  Vec2 at = to_square(local);
+  uint32_t node = field.cells[cell].root;
+  int i = descend(at);
+  while (field.nodes[node].is_divided(i)) {
+    node = field.nodes[node].child(i);
+    i = descend(at);
+  }
+  return 16 * size_t(node) + size_t(i);
+}
+
+}  // namespace
+
+Tallies& Training::of(Side side) { return side == Side::camera ? q : w; }
+
+Training start_training(const Fields& fields) {
+  Training t;
+  resize(t.q, fields.q);
+  resize(t.w, fields.w);
+  return t;
+}
+
+void record(const Fields& fields, const Field& field, Tallies& tallies, uint32_t cell, const Vec3& w, float value,
+            float weight) {
+  const Vec3 local = fields.cells[cell].frame.to_local(w);
+  if (!(local.z > 0) || !(weight > 0) || !(value >= 0)) return;
+  const size_t stratum = find_stratum(field, cell, local);
+  const double clamped = std::min(double(weight), largest_weight);
+  add(tallies.weight[stratum], to_fixed(clamped, weight_step));
+  if (value > 0) add(tallies.value[stratum], to_fixed(clamped * value / field.unit, value_step));
+}
+
+void record_direct(const Field& field, Tallies& tallies, uint32_t cell, float value) {
+  add(tallies.directs[cell], 1);
+  if (value > 0) add(tallies.direct[cell], to_fixed(value / field.unit, value_step));
+}
+
+void record_visit(Tallies& tallies, uint32_t cell) { add(tallies.visits[cell], 1); }
+
+void record_missing(Sightings& sightings, CellKey key, const Vec3& n) {
+  Sighting& s = sightings[key];
+  ++s.count;
+  s.normal += glm::i64vec3(n * 4096.0f);
+}
+
+void gather(Sightings& to, Sightings& from) {
+  for (const auto& [key, s] : from) to[key].count += s.count, to[key].normal += s.normal;
+  from.clear();
+}
+
+}  // namespace ajar

@@ -1,0 +1,84 @@
+#include "ajar/path/record.h"
+
+namespace ajar {
+namespace {
+
+// A vertex as the fields see it.
+struct End {
+  uint32_t cell = none;
+  float cosine = 0;           // of the segment here
+  float q = 0, w = 0;         // radiance and importance that it scatters, to any direction
+  double own = 0, other = 0;  // vertices per area of the tracing and of the other side
+};
+
+// Blank where the vertex scatters nothing that the fields could know.
+End end_of(const Fields& fields, const Vertex& v, const Vec3& d, Side side) {
+  End e;
+  e.cosine = std::abs(glm::dot(v.ng, d));
+  e.q = v.shines;
+  if (v.guide.cell == none || !connectable(v.guide)) return e;
+  e.cell = v.guide.cell;
+  const float scatters = luminance(albedo(v.guide.bsdf, v.guide.wo_local)) * inv_pi;
+  const FieldCell& q = fields.q.cells[e.cell];
+  const FieldCell& w = fields.w.cells[e.cell];
+  e.q += scatters * q.total, e.w = scatters * w.total;
+  e.own = side == Side::camera ? q.visits : w.visits;
+  e.other = side == Side::camera ? w.visits : q.visits;
+  return e;
+}
+
+// Weight of the segment's record at an end: the reciprocal of the density of segments of both sides, relative to a
+// cosine lobe from every vertex here.
+float weight_at(const End& e, double density) { return float(std::max(e.own + e.other, 1e-30) * inv_pi / density); }
+
+void record_segment(const Fields& fields, Training& training, const Vertex& a, const Vertex& b, Side side) {
+  const Vec3 d = -b.guide.wo;
+  End from = end_of(fields, a, d, side), to = end_of(fields, b, d, side);
+  if (from.cell == none || !(from.cosine > 1e-4f) || !(to.cosine > 1e-4f)) return;
+  if (to.cell == none && !(to.q > 0)) return;
+  const double pdf = b.own * b.distance2 / to.cosine;
+  const double back = (1 - b.guide.mix_other) * to.cosine * inv_pi + b.guide.mix_other * b.guide.back;
+  if (from.own + from.other <= 0) from.own = 1;
+  const double density = from.own * pdf / from.cosine + to.other * back / to.cosine;
+  const float at_a = weight_at(from, density);
+  record(fields, fields.q, training.q, from.cell, d, to.q, at_a);
+  record(fields, fields.w, training.w, from.cell, d, to.w, at_a);
+  if (to.cell == none) return;
+  const float at_b = weight_at(to, density);
+  record(fields, fields.q, training.q, to.cell, -d, from.q, at_b);
+  record(fields, fields.w, training.w, to.cell, -d, from.w, at_b);
+}
+
+// The lamp's own cell learns where W lies, too: it guides emission.
+void record_emission(const Fields& fields, Training& training, Sightings& sightings, const Vertex& lamp,
+                     const Vertex& first) {
+  if (lamp.infinite || lamp.point.delta_position) return;
+  const Place at = find(fields.table, lamp.p, lamp.ng);
+  if (at.missing) record_missing(sightings, at.missing, lamp.ng);
+  if (at.cell == none) return;
+  record_visit(training.w, at.cell);
+  const Vec3 d = -first.guide.wo;
+  const End to = end_of(fields, first, d, Side::light);
+  const float cosine = glm::dot(lamp.ng, d);
+  if (!(to.cosine > 1e-4f) || !(cosine > 0)) return;
+  const double pdf = first.own * first.distance2 / to.cosine;
+  record(fields, fields.w, training.w, at.cell, d, to.w, float(cosine * inv_pi / pdf));
+}
+
+}  // namespace
+
+void record_subpath(const Fields& fields, Training& training, Sightings& sightings, const Subpath& subpath, Side side) {
+  Tallies& own_tallies = training.of(side);
+  if (side == Side::light && subpath.n > 1) record_emission(fields, training, sightings, subpath[0], subpath[1]);
+  for (int i = 1; i < subpath.n; ++i) {
+    const Vertex& b = subpath[i];
+    if (connectable(b.guide)) {
+      if (b.guide.missing) record_missing(sightings, b.guide.missing, glm::dot(b.ng, b.guide.wo) < 0 ? -b.ng : b.ng);
+      if (b.guide.cell != none) record_visit(own_tallies, b.guide.cell);
+    }
+    const Vertex& a = subpath[i - 1];
+    if (i > 1 && !a.delta && connectable(a.guide)) record_segment(fields, training, a, b, side);
+  }
+}
+
+}  // namespace ajar

@@ -1,0 +1,204 @@
+// Learned fields, as a user meets them: the options of ajar render that have to do with them, and ajar fields.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "ajar/core/error.h"
+#include "ajar/film/picture.h"
+#include "app/arguments.h"
+#include "app/commands.h"
+
+namespace ajar {
+namespace {
+
+const std::string box = AJAR_SOURCE_DIR "/scenes/box/box.xml";
+
+struct FieldsUsed : testing::Test {
+  std::filesystem::path folder;
+  std::string out, fields, state;
+
+  void SetUp() override {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder = std::filesystem::path(testing::TempDir()) /
+             ("ajar fields " + std::string(info->name()) + " " + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder);
+    out = (folder / "image.exr").string(), fields = (folder / "fields").string(), state = (folder / "state").string();
+  }
+  void TearDown() override { std::filesystem::remove_all(folder); }
+
+  static void parse(std::vector<std::string> arguments) {
+    CLI::App app;
+    add_render(app);
+    add_fields(app);
+    std::reverse(arguments.begin(), arguments.end());
+    app.parse(arguments);
+  }
+  /// Renders the box, small; the record.
+  nlohmann::json render(const std::vector<std::string>& more, const std::string& integrator = "guided-bdpt") const {
+    std::vector<std::string> arguments = {"render",       box,        "-q", "--size", "24x16", "--max-depth", "4",
+                                          "--integrator", integrator, "-o", out};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    parse(arguments);
+    std::ifstream record(folder / "image.json");
+    return nlohmann::json::parse(record);
+  }
+  template <class Call>
+  static std::string error(const Call& call) {
+    try {
+      call();
+    } catch (const std::exception& e) {
+      return e.what();
+    }
+    return {};
+  }
+  std::string told(std::vector<std::string> more) const {
+    more.insert(more.begin(), {"fields", fields});
+    testing::internal::CaptureStdout();
+    const std::string wrong = error([&] { parse(more); });
+    const std::string text = testing::internal::GetCapturedStdout();
+    EXPECT_EQ(wrong, "");
+    return text;
+  }
+};
+
+TEST_F(FieldsUsed, AreRecorded) {
+  const auto json = render({"--spp", "9", "--save-fields", fields});
+  EXPECT_EQ(json["spp"], 9);
+  EXPECT_EQ(json["options"]["guide"], "both");
+  EXPECT_EQ(json["options"]["field_memory"], 8 << 20);
+  EXPECT_EQ(json["options"]["save_fields"], fields);
+  EXPECT_EQ(json["fields"]["dropped_passes"], 8);
+  EXPECT_GE(json["fields"]["generation"], 8);
+  EXPECT_GT(json["fields"]["cells"], 10);
+  EXPECT_GE(json["fields"]["nodes"]["q"], json["fields"]["cells"]);
+  EXPECT_GE(json["fields"]["nodes"]["w"], json["fields"]["cells"]);
+  EXPECT_GT(json["fields"]["bytes"], 1000);
+  for (const char* clock : {"seconds", "cpu_seconds"}) {
+    EXPECT_GT(json[clock]["learn"], 0) << clock;
+    EXPECT_GT(json[clock]["trace"], 0) << clock;
+  }
+  const auto plain = render({"--spp", "1"}, "bdpt");
+  EXPECT_FALSE(plain.contains("fields"));
+  EXPECT_FALSE(plain["options"].contains("guide"));
+  EXPECT_EQ(plain["seconds"]["learn"], 0);
+}
+
+TEST_F(FieldsUsed, LoadedFieldsSpareTheYoungPasses) {
+  const auto first = render({"--spp", "9", "--save-fields", fields});
+  const auto second = render({"--spp", "16", "--load-fields", fields});
+  EXPECT_EQ(second["spp"], 16);
+  EXPECT_EQ(second["options"]["load_fields"], fields);
+  EXPECT_EQ(second["fields"]["dropped_passes"], 0);
+  EXPECT_GT(second["fields"]["generation"], first["fields"]["generation"]);
+}
+
+TEST_F(FieldsUsed, GuideAndMemoryAreObeyed) {
+  const auto both = render({"--spp", "9"});
+  const Picture image = read_picture(out);
+  for (const char* side : {"camera", "light"}) {
+    EXPECT_EQ(render({"--spp", "9", "--guide", side})["options"]["guide"], side);
+    EXPECT_NE(read_picture(out).pixels, image.pixels) << side;
+  }
+  const auto small = render({"--spp", "9", "--field-memory", "64K"});
+  EXPECT_EQ(small["options"]["field_memory"], 64 << 10);
+  EXPECT_LT(small["fields"]["cells"], both["fields"]["cells"]);
+}
+
+// What a render started from is its own affair: the file of fields is not needed again.
+TEST_F(FieldsUsed, ResumeIsTheStraightRun) {
+  render({"--spp", "9", "--save-fields", fields});
+  for (const bool loaded : {false, true}) {
+    const std::vector<std::string> from =
+        loaded ? std::vector<std::string>{"--load-fields", fields} : std::vector<std::string>{};
+    const auto with = [&](std::vector<std::string> more) {
+      more.insert(more.end(), from.begin(), from.end());
+      return more;
+    };
+    const auto straight = render(with({"--spp", "14"}));
+    const Picture image = read_picture(out);
+    render(with({"--spp", "5", "--checkpoint", state}));
+    const auto resumed = render({"--spp", "14", "--resume", state});
+    EXPECT_EQ(read_picture(out).pixels, image.pixels);
+    EXPECT_EQ(resumed["fields"], straight["fields"]);
+  }
+}
+
+TEST_F(FieldsUsed, WhatMakesNoSenseIsAnError) {
+  render({"--spp", "1", "--save-fields", fields});
+  std::filesystem::remove(out);
+  const std::string none_such = (folder / "none").string();
+  struct Case {
+    std::vector<std::string> more;
+    std::string integrator, says;
+  };
+  const std::vector<Case> cases = {
+      {{"--save-fields", state}, "path", "--save-fields: the integrator path learns no fields"},
+      {{"--load-fields", fields}, "bdpt", "--load-fields: the integrator bdpt learns no fields"},
+      {{"--guide", "light"}, "light", "--guide: the integrator light learns no fields"},
+      {{"--field-memory", "8M"}, "bdpt", "--field-memory: the integrator bdpt learns no fields"},
+      {{"--guide", "neither"}, "guided-bdpt", "--guide: neither not in"},
+      {{"--load-fields", none_such}, "guided-bdpt", none_such + ": no such file of fields"},
+      {{"--load-fields", box}, "guided-bdpt", box + ": not a file of fields of this version"},
+      {{"--load-fields", fields, "--resume", state}, "guided-bdpt", "leave out either this or --resume"},
+      {{"--save-fields", none_such + "/f"}, "guided-bdpt", "no such folder"},
+      {{"--save-fields", folder.string()}, "guided-bdpt", "is a folder"},
+  };
+  for (const Case& c : cases) {
+    const std::string what = error([&] { render(c.more, c.integrator); });
+    EXPECT_NE(what.find(c.says), std::string::npos) << c.says << ": " << what;
+    EXPECT_FALSE(std::filesystem::exists(out)) << c.says;
+  }
+  EXPECT_FALSE(std::filesystem::exists(state));
+}
+
+TEST(FieldMemory, IsASize) {
+  EXPECT_EQ(parse_bytes("--field-memory", "8M"), size_t(8) << 20);
+  EXPECT_EQ(parse_bytes("--field-memory", "512K"), size_t(512) << 10);
+  EXPECT_EQ(parse_bytes("--field-memory", "1G"), size_t(1) << 30);
+  EXPECT_EQ(parse_bytes("--field-memory", "70000"), size_t(70000));
+  for (const char* text : {"", "M", "-8M", "8Q", "8 M", "8MB", "0", "63K", "65G", "99999999999999999999", "1e9"})
+    EXPECT_THROW(parse_bytes("--field-memory", text), Error) << text;
+}
+
+TEST_F(FieldsUsed, AreToldAndShown) {
+  const auto json = render({"--spp", "9", "--save-fields", fields});
+  const std::string text = told({});
+  EXPECT_NE(text.find(json["fields"]["cells"].dump() + " cells; level 0: "), std::string::npos) << text;
+  EXPECT_NE(text.find(json["fields"]["bytes"].dump() + " bytes"), std::string::npos) << text;
+  EXPECT_NE(text.find("from 17 passes"), std::string::npos) << text;
+  const std::string more = told({"--scene", box, "--size", "40x30", "-o", folder.string()});
+  EXPECT_EQ(more.find(text), 0u);
+  for (const char* name : {"cells.png", "irradiance.png", "importance.png", "strata-q.png", "strata-w.png"}) {
+    EXPECT_NE(more.find(name), std::string::npos) << name;
+    const Picture picture = read_picture((folder / name).string());
+    EXPECT_EQ(picture.width, 40);
+    EXPECT_EQ(picture.height, 30);
+    EXPECT_NE(*std::max_element(picture.pixels.begin(), picture.pixels.end()), 0) << name;
+  }
+}
+
+TEST_F(FieldsUsed, PicturesNeedTheRightSceneAndAFolder) {
+  render({"--spp", "1", "--save-fields", fields});
+  const std::string other = AJAR_SOURCE_DIR "/scenes/sunrise/sunrise.xml";
+  const auto refused = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"fields", fields});
+    testing::internal::CaptureStdout();
+    const std::string what = error([&] { parse(more); });
+    EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+    return what;
+  };
+  EXPECT_NE(refused({"--scene", other, "-o", folder.string()}).find("fields of another scene"), std::string::npos);
+  EXPECT_NE(refused({"--scene", box, "-o", fields}).find("no such folder"), std::string::npos);
+  EXPECT_NE(refused({"--scene", box}).find("no such folder"), std::string::npos);
+  EXPECT_NE(refused({"-o", folder.string()}).find("add --scene"), std::string::npos);
+  EXPECT_NE(refused({"-D", "door=5"}).find("add --scene"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder / "cells.png"));
+}
+
+}  // namespace
+}  // namespace ajar

@@ -1,0 +1,103 @@
+// Files of bytes: the same back, and nothing but an Error from a damaged one.
+#include "ajar/core/bytes.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "ajar/core/error.h"
+
+namespace ajar {
+namespace {
+
+constexpr FileKind kind = {"TESTab01", "list", "write one", "write it again"};
+
+struct Bytes : testing::Test {
+  std::string path = (std::filesystem::path(testing::TempDir()) / ("ajar_bytes" + std::to_string(::getpid()))).string();
+  void TearDown() override { std::filesystem::remove(path); }
+
+  void write() const {
+    write_file(path, kind, [](Writer& w) {
+      w.text("words");
+      w.value(1.5);
+      w.array(std::vector<int>{3, 1, 4, 1, 5});
+      w.array(std::vector<int>{});
+    });
+  }
+  std::vector<int> read(const FileKind& as = kind) const {
+    Reader r(path, as);
+    std::string text;
+    double number = 0;
+    std::vector<int> list, empty{7};
+    r.text(text), r.value(number), r.array(list), r.array(empty);
+    r.finish();
+    EXPECT_EQ(text, "words");
+    EXPECT_EQ(number, 1.5);
+    EXPECT_TRUE(empty.empty());
+    return list;
+  }
+};
+
+TEST_F(Bytes, ComeBack) {
+  write();
+  EXPECT_EQ(read(), (std::vector{3, 1, 4, 1, 5}));
+  EXPECT_FALSE(std::filesystem::exists(path + ".tmp"));
+}
+
+TEST_F(Bytes, AnyChangedBitIsAnError) {
+  write();
+  const auto size = std::filesystem::file_size(path);
+  for (size_t at = 0; at < size; ++at) {
+    write();
+    std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+    file.seekg(std::streamoff(at));
+    const char was = char(file.get());
+    file.seekp(std::streamoff(at));
+    file.put(char(was ^ (1 << (at % 8))));
+    file.close();
+    EXPECT_THROW(read(), Error) << at;
+  }
+}
+
+TEST_F(Bytes, TooShortOrTooLongIsAnError) {
+  write();
+  const auto size = std::filesystem::file_size(path);
+  for (size_t length = 0; length < size; ++length) {
+    write();
+    std::filesystem::resize_file(path, length);
+    EXPECT_THROW(read(), Error) << length;
+  }
+  write();
+  std::filesystem::resize_file(path, size + 8);
+  EXPECT_THROW(read(), Error);
+}
+
+TEST_F(Bytes, ErrorsNameFileKindAndCure) {
+  write();
+  const auto message = [&](const FileKind& as) -> std::string {
+    try {
+      read(as);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return {};
+  };
+  const FileKind other = {"TESTab02", "list", "write one", "write it again"};
+  EXPECT_EQ(message(other), path + ": not a list of this version of ajar; write it again");
+  std::filesystem::resize_file(path, 20);
+  EXPECT_EQ(message(kind), path + ": list is damaged; write it again");
+  std::filesystem::remove(path);
+  EXPECT_EQ(message(kind), path + ": no such list; write one");
+}
+
+TEST_F(Bytes, WhatCannotBeWrittenIsAnErrorAndLeavesNothing) {
+  EXPECT_THROW(write_file(path + "/no/such", kind, [](Writer&) {}), Error);
+  std::filesystem::create_directory(path);
+  EXPECT_THROW(write(), Error) << "a folder is in the way";
+  EXPECT_FALSE(std::filesystem::exists(path + ".tmp"));
+  EXPECT_THROW(read(), Error);
+}
+
+}  // namespace
+}  // namespace ajar

@@ -1,0 +1,127 @@
+// Names of cells and their table: what is looked up, and what answers in place of cells that do not exist.
+#include "ajar/field/cells.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "ajar/core/sampler.h"
+
+namespace ajar {
+namespace {
+
+const Vec3 up(0, 1, 0);
+
+CellTable table() { return make_cell_table(Vec3(1, 2, 3), 6); }
+
+// Centre of a cube of level 0.
+Vec3 centre_of_cube(const CellTable& t, int x, int y, int z) {
+  return t.origin + t.width * (Vec3(float(x), float(y), float(z)) + 0.5f);
+}
+
+TEST(Cells, JitterWithinACellDoesNotMatter) {
+  const CellTable t = table();
+  const Vec3 centre = centre_of_cube(t, 3, 4, 5);
+  const CellKey key = find(t, centre, up).missing;
+  Sampler sampler = make_sampler(SamplerKind::independent, 1, Side::camera, 0, 0);
+  for (int i = 0; i < 10000; ++i) {
+    const Vec2 a = sampler.next2(), b = sampler.next2(), c = sampler.next2();
+    const Vec3 p = centre + t.width * 0.499f * (2.0f * Vec3(a, b.x) - 1.0f);
+    const Vec3 n = glm::normalize(up + 0.2f * (2.0f * Vec3(b.y, c) - 1.0f));
+    ASSERT_EQ(find(t, p, n).missing, key);
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3 p = centre;
+    p[axis] += 0.501f * t.width;
+    EXPECT_NE(find(t, p, up).missing, key) << "the next cube";
+  }
+}
+
+TEST(Cells, NormalsAndPlacesHaveTheirOwn) {
+  const CellTable t = table();
+  std::set<CellKey> keys;
+  for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y)
+      for (int z = -1; z <= 1; ++z)
+        if (x != 0 || y != 0 || z != 0)
+          keys.insert(find(t, Vec3(1, 2, 3), glm::normalize(Vec3(float(x), float(y), float(z)))).missing);
+  EXPECT_EQ(keys.size(), 26u);
+  for (int i = 0; i < 1000; ++i) keys.insert(find(t, centre_of_cube(t, i % 10, i / 10 % 10, i / 100), up).missing);
+  EXPECT_EQ(keys.size(), 26u + 1000 - 1) << "one of them is the cube of the first 26";
+  EXPECT_FALSE(keys.contains(0));
+}
+
+TEST(Cells, DividedOnesAnswerWherePartsAreUnknown) {
+  CellTable t = table();
+  const Vec3 centre = centre_of_cube(t, 3, 4, 5), low = centre - 0.2f * t.width, high = centre + 0.2f * t.width;
+  Place at = find(t, low, up);
+  EXPECT_EQ(at.cell, none);
+  const CellKey whole = at.missing;
+  EXPECT_EQ(level_of(whole), 0);
+  EXPECT_EQ(parent_of(whole), 0u);
+  insert(t, whole, 7);
+  at = find(t, low, up);
+  EXPECT_EQ(at.cell, 7u);
+  EXPECT_EQ(at.missing, 0u);
+
+  set_divided(t, whole);
+  at = find(t, low, up);
+  EXPECT_EQ(at.cell, 7u);
+  EXPECT_EQ(level_of(at.missing), 1);
+  EXPECT_EQ(parent_of(at.missing), whole);
+  const CellKey part = at.missing;
+  insert(t, part, 8);
+  EXPECT_EQ(find(t, low, up).cell, 8u);
+  EXPECT_EQ(find(t, low, up).missing, 0u);
+  EXPECT_EQ(find(t, high, up).cell, 7u);
+  EXPECT_NE(find(t, high, up).missing, part);
+  EXPECT_EQ(parent_of(find(t, high, up).missing), whole);
+  EXPECT_EQ(find(t, low, -up).cell, none) << "the other side";
+  EXPECT_EQ(cell_of(t, part), 8u);
+  EXPECT_EQ(cell_of(t, parent_of(part)), 7u);
+}
+
+TEST(Cells, DivideDownToTheLastLevel) {
+  CellTable t = table();
+  const Vec3 p(1.2f, 2.3f, 3.4f);
+  for (int level = 0; level <= most_cell_levels; ++level) {
+    const Place at = find(t, p, up);
+    ASSERT_EQ(level_of(at.missing), level);
+    insert(t, at.missing, uint32_t(level));
+    if (level < most_cell_levels) set_divided(t, at.missing);
+  }
+  EXPECT_EQ(find(t, p, up).cell, uint32_t(most_cell_levels));
+  EXPECT_EQ(find(t, p, up).missing, 0u);
+}
+
+TEST(Cells, TableGrows) {
+  CellTable t = table();
+  std::vector<CellKey> keys;
+  for (int i = 0; i < 8000; ++i) {
+    keys.push_back(find(t, centre_of_cube(t, i % 20, i / 20 % 20, i / 400), up).missing);
+    insert(t, keys.back(), uint32_t(i));
+    if (i % 3 == 0) set_divided(t, keys.back());
+  }
+  for (int i = 0; i < 8000; ++i) {
+    const Place at = find(t, centre_of_cube(t, i % 20, i / 20 % 20, i / 400), up);
+    ASSERT_EQ(at.cell, uint32_t(i));
+    ASSERT_EQ(at.missing != 0, i % 3 == 0) << "still divided";
+  }
+}
+
+TEST(Cells, FarPlacesAndExtremeSizes) {
+  for (const float radius : {1e-30f, 1.0f, 1e30f}) {
+    CellTable t = make_cell_table(Vec3(0), radius);
+    EXPECT_GT(t.width, 0) << radius;
+    for (const float x : {0.0f, 1.0f, -1e10f, 1e30f, -infinity, infinity})
+      for (const Vec3 p : {Vec3(x), Vec3(0, x, 0)}) {
+        const Place at = find(t, p, up);
+        ASSERT_NE(at.missing == 0, at.cell == none);
+        if (at.missing) insert(t, at.missing, 1);
+        EXPECT_EQ(find(t, p, up).cell, 1u);
+      }
+  }
+}
+
+}  // namespace
+}  // namespace ajar

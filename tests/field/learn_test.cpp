@@ -1,0 +1,369 @@
+// Lessons of hand-made records, against figures computed by hand.
+#include "ajar/field/learn.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <thread>
+
+#include "ajar/core/sampler.h"
+#include "kit/stage.h"
+
+namespace ajar {
+namespace {
+
+const Vec3 up(0, 0, 1), somewhere(0.1f, 0.1f, 0.1f);
+
+// A direction in the middle of a stratum of the root, seen from a cell whose frame is the world's.
+Vec3 towards(int stratum, const Vec2& within = Vec2(0.5f)) {
+  return from_square((Vec2(stratum & 3, stratum >> 2) + within) / 4.0f);
+}
+
+Sightings seen(CellKey key, const Vec3& n, int times) {
+  Sightings s;
+  for (int i = 0; i < times; ++i) record_missing(s, key, n);
+  return s;
+}
+
+// Fields with a cell around somewhere that knows nothing yet.
+Fields one_cell() {
+  Fields f;
+  f.table = make_cell_table(Vec3(0), 1);
+  const Sightings s = seen(find(f.table, somewhere, up).missing, up, 4);
+  f = learn(f, start_training(f), s, 1, {});
+  if (f.cells.size() == 1) f.cells[0].frame = {Vec3(1, 0, 0), Vec3(0, 1, 0), up};
+  return f;
+}
+
+// Records of one field, Q or W, in the first cell.
+struct Lesson {
+  Fields fields;
+  Training training = start_training(fields);
+  Side side = Side::camera;
+
+  explicit Lesson(const Fields& f, Side s = Side::camera) : fields(f), side(s) {}
+  void add(const Vec3& w, float value, float weight) {
+    record(fields, fields.of(side), training.of(side), 0, w, value, weight);
+  }
+  Fields learned(const LearnOptions& options = {}) const { return learn(fields, training, {}, 1, options); }
+};
+
+float mean_of(const Field& f, int stratum) { return f.mean[16 * size_t(f.cells[0].root) + size_t(stratum)]; }
+float weight_of(const Field& f, int stratum) { return f.weight[16 * size_t(f.cells[0].root) + size_t(stratum)]; }
+
+template <class T>
+bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+bool same_field(const Field& a, const Field& b) {
+  return same_bytes(a.cells, b.cells) && same_bytes(a.nodes, b.nodes) && same_bytes(a.mean, b.mean) &&
+         same_bytes(a.weight, b.weight);
+}
+bool same_training(const Tallies& a, const Tallies& b) {
+  return a.value == b.value && a.weight == b.weight && a.direct == b.direct && a.directs == b.directs &&
+         a.visits == b.visits;
+}
+
+TEST(Learn, EvidenceMovesItsStratumAlone) {
+  for (const Side side : {Side::camera, Side::light}) {
+    const Fields blank = one_cell();
+    ASSERT_EQ(blank.cells.size(), 1u);
+    Lesson first(blank, side);
+    first.add(towards(5), 3, 2);
+    const Fields a = first.learned();
+    EXPECT_FLOAT_EQ(mean_of(a.of(side), 5), 3);
+    EXPECT_FLOAT_EQ(weight_of(a.of(side), 5), 2);
+    for (int i = 0; i < 16; ++i) EXPECT_EQ(mean_of(a.of(side), i), i == 5 ? 3 : 0) << i;
+    const Side other = side == Side::camera ? Side::light : Side::camera;
+    EXPECT_EQ(mean_of(a.of(other), 5), 0);
+
+    // Half of the older weight 2 is kept: 3 + (5 - 3) * 1 / (1 + 1).
+    Lesson second(a, side);
+    second.add(towards(5), 5, 1);
+    const Fields b = second.learned();
+    EXPECT_FLOAT_EQ(mean_of(b.of(side), 5), 4);
+    EXPECT_FLOAT_EQ(weight_of(b.of(side), 5), 2);
+
+    // Records of one lesson are averaged by weight: (1 * 7 + 3 * 1) / 4 = 2.5; 4 + (2.5 - 4) * 4 / (1 + 4).
+    Lesson third(b, side);
+    third.add(towards(5, {0.1f, 0.9f}), 7, 1), third.add(towards(5, {0.9f, 0.1f}), 1, 3);
+    EXPECT_FLOAT_EQ(mean_of(third.learned().of(side), 5), 2.8f);
+    EXPECT_EQ(third.learned().generation, blank.generation + 3);
+  }
+}
+
+TEST(Learn, ZerosPullDownAndSilenceDoesNot) {
+  const Fields blank = one_cell();
+  Lesson first(blank);
+  first.add(towards(9), 3, 2), first.add(towards(2), 1, 2);
+  const Fields a = first.learned();
+  Lesson second(a);
+  second.add(towards(9), 0, 3);
+  const Fields b = second.learned();
+  EXPECT_FLOAT_EQ(mean_of(b.q, 9), 0.75f);  // 3 + (0 - 3) * 3 / (1 + 3)
+  EXPECT_FLOAT_EQ(mean_of(b.q, 2), 1);
+  EXPECT_FLOAT_EQ(weight_of(b.q, 2), 2) << "nothing new was seen there, nothing is forgotten";
+}
+
+TEST(Learn, TotalsAreIrradianceAndMixIsTrust) {
+  Lesson lesson(one_cell());
+  for (int i = 0; i < 16; ++i) lesson.add(towards(i), 2, 1);
+  record_direct(lesson.fields.q, lesson.training.q, 0, 5), record_direct(lesson.fields.q, lesson.training.q, 0, 0);
+  for (int i = 0; i < 3; ++i) record_visit(lesson.training.q, 0);
+  LearnOptions options;
+  options.mix = 0.6f, options.trust = 48;
+  const double paths = 10, area = sqr(double(lesson.fields.table.width));
+  const FieldCell cell = learn(lesson.fields, lesson.training, {}, paths, options).q.cells[0];
+  EXPECT_FLOAT_EQ(cell.direct, 2.5f);
+  EXPECT_NEAR(cell.total, 2.5 + 2 * pi, 0.25) << "radiance 2 from everywhere, and the direct light";
+  EXPECT_FLOAT_EQ(cell.mix, 0.6f * 16 / (16 + 48));
+  EXPECT_NEAR(cell.visits, 3 / (area * paths), 1e-5 * cell.visits);
+}
+
+TEST(Learn, SharesAreProjectedSolidAngleTimesMean) {
+  Lesson lesson(one_cell());
+  for (int i = 0; i < 16; ++i) lesson.add(towards(i), i == 6 ? 4.0f : 1.0f, 1);
+  LearnOptions options;
+  options.divide_stratum = 1;
+  const Fields f = lesson.learned(options);
+  double area[16] = {}, sum = 0, bare = 0;
+  const int n = 400;
+  for (int y = 0; y < n; ++y)
+    for (int x = 0; x < n; ++x) {
+      Vec2 at((float(x) + 0.5f) / n, (float(y) + 0.5f) / n);
+      const Vec3 w = from_square(at);
+      area[descend(at)] += double(w.z / square_density(w)) / (double(n) * n);
+    }
+  for (int i = 0; i < 16; ++i) bare += area[i] * (i == 6 ? 4 : 1);
+  const double floor = 0.03 * bare / std::numbers::pi;  // 3 % of the mean are everywhere
+  for (int i = 0; i < 16; ++i) sum += area[i] *= (i == 6 ? 4 : 1) + floor;
+  for (int i = 0; i < 16; ++i)
+    EXPECT_NEAR(f.q.nodes[f.q.cells[0].root].steps(i) / 65536.0, area[i] / sum, 0.08 * area[i] / sum)
+        << i;  // areas are by few points
+}
+
+TEST(Learn, HeavyStrataDivideAndLightOnesJoin) {
+  const Fields blank = one_cell();
+  Lesson first(blank);
+  for (int i = 0; i < 16; ++i) first.add(towards(i), i == 5 ? 1.0f : 0.0f, i == 5 ? 16.0f : 1.0f);
+  const Fields a = first.learned();
+  const StrataNode& root = a.q.nodes[a.q.cells[0].root];
+  EXPECT_EQ(root.divided, 1u << 5);
+  ASSERT_EQ(a.q.nodes.size(), 2u);
+  for (size_t i = 0; i < 16; ++i) {
+    EXPECT_FLOAT_EQ(a.q.mean[16 * root.child(5) + i], 1);
+    EXPECT_FLOAT_EQ(a.q.weight[16 * root.child(5) + i], 1);
+  }
+  EXPECT_EQ(a.w.nodes.size(), 1u);
+
+  // Evidence goes to the part that it is for.
+  Lesson part(a);
+  part.add(towards(5, {0.9f, 0.9f}), 4, 0.5f);
+  const Fields p = part.learned();
+  const uint32_t child = p.q.nodes[p.q.cells[0].root].child(5);
+  EXPECT_FLOAT_EQ(p.q.mean[16 * child + 15], 2.5f);
+  EXPECT_FLOAT_EQ(p.q.mean[16 * child + 14], 1);
+
+  Lesson second(a);
+  for (int j = 0; j < 16; ++j)
+    second.add(towards(5, (Vec2(j & 3, j >> 2) + 0.5f) / 4.0f), 0, 32);  // kept 0.5: mean 0.5 / 32.5
+  second.add(towards(10), 8, 4);
+  const Fields b = second.learned();
+  const StrataNode& joined = b.q.nodes[b.q.cells[0].root];
+  EXPECT_FALSE(joined.is_divided(5));
+  EXPECT_FLOAT_EQ(mean_of(b.q, 5), 0.5f / 32.5f);
+  EXPECT_FLOAT_EQ(weight_of(b.q, 5), 16 * 32.5f);
+}
+
+TEST(Learn, LittleEvidenceDoesNotDivide) {
+  Lesson lesson(one_cell());
+  lesson.add(towards(5), 1, 7.9f);
+  EXPECT_EQ(lesson.learned().q.nodes.size(), 1u);
+}
+
+TEST(Learn, DivisionEndsAtTheLastLevel) {
+  Fields f = one_cell();
+  for (int pass = 0; pass < 12; ++pass) {
+    Lesson lesson(f);
+    for (int i = 0; i < 20; ++i) lesson.add(towards(6, {0.3f, 0.7f}), 100, 60);
+    for (int y = 0; y < 256; ++y)  // darkness around
+      for (int x = 0; x < 256; ++x) lesson.add(from_square((Vec2(float(x), float(y)) + 0.5f) / 256.0f), 0, 0.25f);
+    f = lesson.learned();
+  }
+  int levels = 1;
+  Vec2 at = to_square(towards(6, {0.3f, 0.7f}));
+  uint32_t node = f.q.cells[0].root;
+  for (int i = descend(at); f.q.nodes[node].is_divided(i); i = descend(at), ++levels) node = f.q.nodes[node].child(i);
+  EXPECT_EQ(levels, most_levels);
+}
+
+TEST(Learn, CellsAreMadeWhereTheyAreMissed) {
+  Fields f;
+  f.table = make_cell_table(Vec3(0), 1);
+  const Vec3 n = glm::normalize(Vec3(0.1f, -0.1f, 1));
+  const CellKey key = find(f.table, somewhere, n).missing;
+  EXPECT_TRUE(learn(f, start_training(f), seen(key, n, 3), 1, {}).cells.empty()) << "seen too rarely";
+  const Fields made = learn(f, start_training(f), seen(key, n, 4), 1, {});
+  ASSERT_EQ(made.cells.size(), 1u);
+  EXPECT_EQ(find(made.table, somewhere, n).cell, 0u);
+  EXPECT_NEAR(glm::dot(made.cells[0].frame.n, n), 1, 1e-3);
+  EXPECT_EQ(made.q.cells[0].mix, 0) << "what knows nothing does not guide";
+  EXPECT_EQ(made.q.cells.size(), 1u);
+  EXPECT_EQ(made.w.cells.size(), 1u);
+  Sightings nowhere = seen(key, n, 4);
+  for (const auto& [k, s] : seen(key, -n, 4)) nowhere[k].count += s.count, nowhere[k].normal += s.normal;
+  EXPECT_TRUE(learn(f, start_training(f), nowhere, 1, {}).cells.empty()) << "normals that cancel";
+}
+
+TEST(Learn, VisitedCellsDivideUnderTheMemoryLimit) {
+  const Fields blank = one_cell();
+  Lesson first(blank);
+  first.add(towards(5), 3, 2);
+  for (int i = 0; i < 300; ++i) record_visit(first.training.q, 0), record_visit(first.training.w, 0);
+  const Fields a = first.learned();
+  EXPECT_EQ(find(a.table, somewhere, up).missing, 0u) << "600 are not enough";
+  Lesson second(a);
+  record_visit(second.training.w, 0);
+  const Fields b = second.learned();
+  const CellKey part = find(b.table, somewhere, up).missing;
+  ASSERT_NE(part, 0u);
+  EXPECT_EQ(find(b.table, somewhere, up).cell, 0u) << "the whole answers until the part is known";
+
+  LearnOptions tight;
+  tight.memory = bytes(b) - 1;
+  const Fields full = learn(b, start_training(b), seen(part, up, 4), 1, tight);
+  EXPECT_EQ(full.cells.size(), 1u);
+  EXPECT_EQ(find(full.table, somewhere, up).cell, 0u);
+  const Fields c = learn(b, start_training(b), seen(part, up, 4), 1, {});
+  ASSERT_EQ(c.cells.size(), 2u);
+  EXPECT_EQ(find(c.table, somewhere, up).cell, 1u);
+  const uint32_t root = c.q.cells[1].root;
+  EXPECT_FLOAT_EQ(c.q.mean[16 * root + 5], 3) << "it begins with what the whole knew";
+  EXPECT_FLOAT_EQ(c.q.weight[16 * root + 5], 0.5f) << "and a quarter of the trust";
+}
+
+TEST(Learn, PartsInheritDividedStrata) {
+  const Fields blank = one_cell();
+  Lesson first(blank);
+  for (int i = 0; i < 16; ++i) first.add(towards(i), i == 5 || i == 12 ? 1.0f : 0.1f, 16);
+  for (int i = 0; i < 700; ++i) record_visit(first.training.q, 0);
+  const Fields a = first.learned();
+  ASSERT_GT(a.q.nodes.size(), 2u);
+  const CellKey part = find(a.table, somewhere, up).missing;
+  const Fields b = learn(a, start_training(a), seen(part, up, 4), 1, {});
+  ASSERT_EQ(b.cells.size(), 2u);
+  for (int i = 0; i < 64; ++i)
+    for (int j = 0; j < 64; ++j) {
+      const Vec2 at((float(i) + 0.5f) / 64, (float(j) + 0.5f) / 64);
+      ASSERT_EQ(density(b.q.nodes, b.q.cells[0].root, at), density(b.q.nodes, b.q.cells[1].root, at));
+    }
+}
+
+struct Record {
+  Vec3 w;
+  float value, weight;
+};
+std::vector<Record> random_records(int n) {
+  Sampler sampler = make_sampler(SamplerKind::independent, 7, Side::camera, 0, 0);
+  std::vector<Record> out;
+  for (int i = 0; i < n; ++i) {
+    const Vec3 w = from_square(sampler.next2());
+    const Vec2 u = sampler.next2();
+    out.push_back({w, std::exp(12 * u.x - 8), 3 * u.y});
+  }
+  return out;
+}
+
+TEST(Learn, OrderAndThreadsDoNotMatter) {
+  const Fields blank = one_cell();
+  std::vector<Record> records = random_records(20000);
+  const auto tell = [](Lesson& lesson, const Record& r) {
+    lesson.add(r.w, r.value, r.weight);
+    record_direct(lesson.fields.q, lesson.training.q, 0, r.value);
+    record_visit(lesson.training.q, 0);
+  };
+  Lesson straight(blank), backwards(blank), together(blank);
+  for (const Record& r : records) tell(straight, r);
+  for (size_t i = records.size(); i-- > 0;) tell(backwards, records[i]);
+  std::vector<std::thread> threads;
+  for (size_t k = 0; k < 4; ++k)
+    threads.emplace_back([&, k] {
+      for (size_t i = k; i < records.size(); i += 4) tell(together, records[i]);
+    });
+  for (std::thread& t : threads) t.join();
+  EXPECT_TRUE(same_training(straight.training.q, backwards.training.q));
+  EXPECT_TRUE(same_training(straight.training.q, together.training.q));
+  EXPECT_TRUE(same_field(straight.learned().q, backwards.learned().q));
+  EXPECT_TRUE(same_field(straight.learned().q, together.learned().q));
+  records[4711].value *= 2;
+  Lesson other(blank);
+  for (const Record& r : records) tell(other, r);
+  EXPECT_FALSE(same_field(straight.learned().q, other.learned().q));
+}
+
+TEST(Learn, OrderOfSightingsDoesNotMatter) {
+  const auto lesson = [](bool backwards) {
+    Fields f;
+    f.table = make_cell_table(Vec3(0), 1);
+    Sightings all, part;
+    for (int k = 0; k < 200; ++k) {
+      const int i = backwards ? 199 - k : k;
+      const Vec3 n = glm::normalize(Vec3(float(i % 3) - 1, float(i % 5) - 1.9f, float(i % 7) - 3));
+      const Vec3 p = Vec3(float(i % 4), float(i / 4 % 4), float(i / 16)) * 0.3f - 0.5f;
+      for (int j = 0; j < 5; ++j) record_missing(part, find(f.table, p, n).missing, n);
+      if (i % (backwards ? 7 : 50) == 0) gather(all, part);
+    }
+    gather(all, part);
+    return learn(f, start_training(f), all, 1, {});
+  };
+  const Fields a = lesson(false), b = lesson(true);
+  ASSERT_GT(a.cells.size(), 100u);
+  ASSERT_EQ(a.cells.size(), b.cells.size());
+  for (size_t i = 0; i < a.cells.size(); ++i) {
+    EXPECT_EQ(a.cells[i].key, b.cells[i].key);
+    EXPECT_EQ(a.cells[i].frame.n, b.cells[i].frame.n);
+  }
+}
+
+TEST(Learn, BadRecordsAreIgnored) {
+  const Fields blank = one_cell();
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  Lesson bad(blank);
+  const Vec3 w = towards(5);
+  bad.add(w, -1, 1), bad.add(w, nan, 1);
+  bad.add(w, 1, 0), bad.add(w, 1, -1), bad.add(w, 1, nan);
+  bad.add(-w, 1, 1), bad.add({1, 0, 0}, 1, 1), bad.add(Vec3(nan), 1, 1);
+  EXPECT_TRUE(same_training(bad.training.q, start_training(blank).q));
+  Lesson huge(blank);
+  for (int i = 0; i < 64; ++i) huge.add(w, i % 2 ? 1e38f : infinity, i % 3 ? 1e38f : infinity);
+  record_direct(blank.q, huge.training.q, 0, infinity), record_direct(blank.q, huge.training.q, 0, nan);
+  LearnOptions undivided;
+  undivided.divide_stratum = 1;
+  const Fields f = huge.learned(undivided);
+  EXPECT_TRUE(mean_of(f.q, 5) > 0 && mean_of(f.q, 5) < infinity);
+  EXPECT_TRUE(f.q.cells[0].total >= 0 && f.q.cells[0].total < infinity);
+  EXPECT_TRUE(f.q.cells[0].mix >= 0 && f.q.cells[0].mix < 1);
+}
+
+TEST(Learn, StartsFromNothing) {
+  Scene empty;
+  finish(empty);
+  for (const Scene& scene : {empty, [] {
+                               Scene s = kit::stage();
+                               s.lights.clear();
+                               for (Shape& shape : s.shapes) shape.light = none;
+                               finish(s);
+                               return s;
+                             }()}) {
+    const Fields f = start_fields(scene, 100);
+    EXPECT_TRUE(f.q.unit > 0 && f.q.unit < double(infinity)) << f.q.unit;
+    EXPECT_TRUE(f.w.unit > 0 && f.w.unit < double(infinity)) << f.w.unit;
+    EXPECT_EQ(find(f.table, Vec3(0.5f), up).cell, none);
+    const Fields next = learn(f, start_training(f), {}, 100, {});
+    EXPECT_TRUE(next.cells.empty());
+    EXPECT_EQ(next.generation, 1u);
+  }
+}
+
+}  // namespace
+}  // namespace ajar

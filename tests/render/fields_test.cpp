@@ -1,0 +1,218 @@
+// Fields frozen in the middle of learning: what samples them agrees with the densities that are claimed, on both sides,
+// and each side knows the density with which the other would have gone its way.
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "ajar/field/emission.h"
+#include "ajar/scene/build.h"
+#include "kit/chisquare.h"
+#include "measure.h"
+
+namespace ajar {
+namespace {
+
+struct Stage {
+  const char* name;
+  Scene (*make)();
+};
+void PrintTo(const Stage& s, std::ostream* out) { *out << s.name; }
+
+const Stage stages[] = {{"two_rooms", [] { return two_rooms(20); }},
+                        {"cornell", [] { return cornell(); }},
+                        {"glass_ball", [] { return glass_ball(); }},
+                        {"bump_plane", [] { return bump_plane(); }},
+                        {"rough_plastic", [] { return with_material(MaterialKind::roughplastic, 0.4f); }},
+                        {"mask", [] { return with_material(MaterialKind::mask); }}};
+
+// A vertex that scatters, as it was found.
+struct Spot {
+  Surface surface;
+  Vec3 wo;
+  Side side;
+};
+
+// Emission is guided where the lamp itself scatters.
+Scene with_grey_lamp(Scene scene) {
+  scene.shapes[scene.lights[0].shape].material = add_diffuse(scene, Rgb(0.3f));
+  finish(scene);
+  return scene;
+}
+
+struct Trained {
+  Scene scene;
+  Accel accel;
+  RenderState state;
+
+  explicit Trained(const Stage& s) : scene(with_grey_lamp(s.make())), accel(scene) {
+    RenderOptions o = statistical("guided-bdpt");
+    o.spp = 7;  // all of them young: learning would go on
+    o.learn.trust = 8, o.learn.divide_cell = 400;
+    state = rendered(scene, accel, o);
+  }
+  const Fields& fields() const { return state.learning.fields; }
+};
+
+// Guided subpaths of both sides; every vertex where a field has a share.
+std::vector<Spot> vertices_of(const Trained& t, int most) {
+  std::vector<Spot> out;
+  WalkOptions options;
+  options.fields = &t.fields();
+  Subpath path;
+  Walk walk;
+  Surface surface;
+  for (uint64_t i = 0; i < 4000 && int(out.size()) < most; ++i)
+    for (const Side side : {Side::camera, Side::light}) {
+      Sampler sampler = make_sampler(SamplerKind::independent, 77, side, i, 0);
+      if (side == Side::camera)
+        start_camera(t.scene, options, sampler.next2() * Vec2(float(t.scene.camera.width)), Vec2(0.5f), path, walk);
+      else if (!start_light(t.scene, options, sampler, path, walk))
+        continue;
+      while (path.n < 6 && step(t.scene, t.accel, options, path, walk, surface)) {
+        const Guide& g = path[path.n - 1].guide;
+        if (g.mix > 0 && !g.blocked) out.push_back({surface, g.wo, side});
+        if (!scatter(options, sampler, path, walk)) break;
+      }
+    }
+  return out;
+}
+
+Guide guide_at(const Trained& t, Side side, const Surface& surface, const Vec3& wo) {
+  Guide g;
+  make_guide(t.scene, &t.fields(), side, surface, wo, g);
+  return g;
+}
+
+constexpr kit::ChiOptions chi_options{.rows = 16, .columns = 32, .samples = 60'000, .quadrature = 4, .level = 1e-6};
+
+class LearnedFields : public testing::TestWithParam<Stage> {};
+
+TEST_P(LearnedFields, SampleAgreesWithDensity) {
+  const Trained t(GetParam());
+  const Fields& f = t.fields();
+  ASSERT_GT(f.cells.size(), 20u);
+  int divided = 0;
+  for (const Side side : {Side::camera, Side::light}) {
+    const Field& field = f.of(side);
+    std::vector<uint32_t> trusted(f.cells.size());
+    std::iota(trusted.begin(), trusted.end(), 0u);
+    std::sort(trusted.begin(), trusted.end(),
+              [&](uint32_t a, uint32_t b) { return field.cells[a].mix > field.cells[b].mix; });
+    for (uint32_t k = 0; k < 6; ++k) {
+      // Three of the most trusted, three of all.
+      const uint32_t cell = k < 3 ? trusted[k] : uint32_t((k - 3) * f.cells.size() / 3);
+      divided += field.nodes[field.cells[cell].root].divided != 0;
+      // The strata are over the cell's own hemisphere; there the map is measured in the square, where they are flat.
+      const auto r = kit::chi_square_square(
+          [&](const Vec2& u) -> std::optional<Vec2> {
+            float p;
+            const Vec3 w = sample(f, field, cell, u, p);
+            if (!(p > 0)) return std::nullopt;
+            EXPECT_NEAR(glm::length(w), 1, 1e-5);
+            return to_square(f.cells[cell].frame.to_local(w));
+          },
+          [&](const Vec2& at) {
+            const Vec3 local = from_square(at);
+            return double(pdf(f, field, cell, f.cells[cell].frame.to_world(local)) / square_density(local));
+          },
+          {.rows = 32, .columns = 32, .samples = 60'000, .quadrature = 4, .level = 1e-6});
+      EXPECT_TRUE(r.ok) << "cell " << cell << ": " << r.message;
+    }
+  }
+  EXPECT_GT(divided, 3) << "cells without divided strata prove little";
+}
+
+TEST_P(LearnedFields, GuideSamplesItsDensity) {
+  const Trained t(GetParam());
+  const auto places = vertices_of(t, 400);
+  ASSERT_GT(places.size(), 100u);
+  for (size_t k = 0; k < 6; ++k) {
+    const Spot& at = places[k * places.size() / 6];
+    const Mode mode = at.side == Side::camera ? Mode::radiance : Mode::importance;
+    const Guide g = guide_at(t, at.side, at.surface, at.wo);
+    int off = 0, smooth = 0, delta = 0;
+    const auto r = kit::chi_square_sphere(
+        [&](const Vec2& u, float u_lobe) -> std::optional<Vec3> {
+          GuideSample s;
+          if (!sample(g, u_lobe, u, mode, s)) return std::nullopt;
+          if (s.delta) return ++delta, std::nullopt;
+          const GuideEval e = evaluate(g, s.wi, mode);
+          ++smooth;
+          const float weight = luminance(s.weight) * s.pdf, f = luminance(e.f_cos);
+          off += std::abs(e.pdf - s.pdf) > 1e-3f * s.pdf || std::abs(weight - f) > 1e-3f * f + 1e-6f ||
+                 std::abs(e.pdf_reverse - s.pdf_reverse) > 1e-3f * s.pdf_reverse;
+          return s.wi;
+        },
+        // A lobe that samples below the horizon there gives nothing: draws and densities are compared above alone.
+        [&](const Vec3& w) { return double(evaluate(g, w, mode).pdf); }, chi_options);
+    EXPECT_TRUE(r.p > chi_options.level) << (at.side == Side::camera ? "camera: " : "light: ") << r.message;
+    EXPECT_NEAR(r.mass, r.drawn, 0.02) << r.message;
+    EXPECT_LT(off, 60 + smooth / 200) << "of " << smooth << ": evaluate and sample disagree";
+  }
+}
+
+// The density of the way back that one side claims is the one that the other side samples with.
+TEST_P(LearnedFields, EachSideKnowsTheOther) {
+  const Trained t(GetParam());
+  Sampler sampler = make_sampler(SamplerKind::independent, 5, Side::camera, 0, 0);
+  int compared = 0, guided = 0, off = 0;
+  for (const Spot& at : vertices_of(t, 3000)) {
+    const Side other = at.side == Side::camera ? Side::light : Side::camera;
+    const Mode mode = at.side == Side::camera ? Mode::radiance : Mode::importance,
+               back_mode = at.side == Side::camera ? Mode::importance : Mode::radiance;
+    const Guide g = guide_at(t, at.side, at.surface, at.wo);
+    GuideSample s;
+    const float u_lobe = sampler.next1();
+    if (!sample(g, u_lobe, sampler.next2(), mode, s)) continue;
+    const Guide h = guide_at(t, other, at.surface, s.wi);
+    float expected = 0;
+    if (s.delta) {
+      GuideSample r;
+      for (int i = 0; i < 64 && expected == 0; ++i)
+        if (sample(h, (float(i) + 0.5f) / 64, Vec2(0.5f), back_mode, r) && r.delta && glm::dot(r.wi, at.wo) > 0.9999f)
+          expected = r.pdf;
+    } else {
+      expected = evaluate(h, at.wo, back_mode).pdf;
+      const GuideEval e = evaluate(g, s.wi, mode);
+      off += std::abs(e.pdf_reverse - s.pdf_reverse) > 1e-3f * s.pdf_reverse;
+    }
+    ++compared;
+    guided += h.mix > 0 && g.mix > 0;
+    off += std::abs(s.pdf_reverse - expected) > 1e-3f * std::max(expected, 1e-4f);
+  }
+  EXPECT_GT(guided, 300);
+  EXPECT_LE(off, compared / 200) << "of " << compared;
+}
+
+TEST_P(LearnedFields, GuidedEmissionSamplesItsDensity) {
+  const Trained t(GetParam());
+  const Fields* f = &t.fields();
+  ASSERT_EQ(t.scene.lights.size(), 1u);
+  EmissionSample first;
+  ASSERT_TRUE(sample_emission(t.scene, f, 0, {0.4f, 0.7f}, {0.5f, 0.5f}, first));
+  ASSERT_NE(find(f->table, first.point.p, first.point.n).cell, none);
+  EXPECT_GT(f->w.cells[find(f->table, first.point.p, first.point.n).cell].mix, 0.1f);
+  int off = 0, moved = 0;
+  const auto r = kit::chi_square_sphere(
+      [&](const Vec2& u, float) -> std::optional<Vec3> {
+        EmissionSample e;
+        if (!sample_emission(t.scene, f, 0, {0.4f, 0.7f}, u, e)) return std::nullopt;
+        const EmissionPdf p = pdf_emission(t.scene, f, e.point, e.direction);
+        const EmissionPdf bare = pdf_emission(t.scene, e.point, e.direction);
+        off += std::abs(p.direction - e.pdf_direction) > 1e-3f * p.direction;
+        moved += std::abs(p.direction - bare.direction) > 0.05f * bare.direction;
+        EXPECT_EQ(p.position, bare.position);
+        return e.direction;
+      },
+      [&](const Vec3& w) { return double(pdf_emission(t.scene, f, first.point, w).direction); }, chi_options);
+  EXPECT_TRUE(r.p > chi_options.level) << r.message;
+  EXPECT_NEAR(r.mass, r.drawn, 0.01) << r.message;
+  EXPECT_LE(off, chi_options.samples / 200);
+  EXPECT_GT(moved, chi_options.samples / 10) << "hardly guided: the test means little";
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, LearnedFields, testing::ValuesIn(stages),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+}  // namespace
+}  // namespace ajar
