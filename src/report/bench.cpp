@@ -5,6 +5,7 @@
 #include <set>
 
 #include "ajar/core/error.h"
+#include "ajar/report/fields.h"
 #include "element.h"
 #include "race.h"
 #include "results.h"
@@ -73,6 +74,44 @@ void write_runs(const Bench& bench, const Stand& stand, const std::vector<Racer>
   }
 }
 
+struct FieldPicture {
+  const char *file, *title;
+  Picture (*make)(const Scene&, const Accel&, const Fields&);
+};
+constexpr FieldPicture field_pictures[] = {
+    {"cells.png", "Cells", picture_cells},
+    {"irradiance.png", "Irradiance of each cell (Q)",
+     [](const Scene& s, const Accel& a, const Fields& f) { return picture_totals(s, a, f, Side::camera).picture; }},
+    {"importance.png", "Importance of each cell (W)",
+     [](const Scene& s, const Accel& a, const Fields& f) { return picture_totals(s, a, f, Side::light).picture; }},
+    {"q.png", "Hemispheres of Q",
+     [](const Scene& s, const Accel& a, const Fields& f) { return picture_strata(s, a, f, Side::camera); }},
+    {"w.png", "Hemispheres of W",
+     [](const Scene& s, const Accel& a, const Fields& f) { return picture_strata(s, a, f, Side::light); }}};
+
+fs::path fields_folder(const Stand& stand, const std::string& method) {
+  return fs::path("fields") / stand.scene->name / method;
+}
+
+/// What a racer learned, as pictures.
+void show_fields(const Bench& bench, const Stand& stand, const LoadedScene& loaded, const Racer& racer) {
+  const Fields& fields = racer.state.learning.fields;
+  if (fields.cells.empty()) return;
+  const fs::path folder = bench.options.folder / fields_folder(stand, racer.method->name);
+  make_folder(folder.string());
+  for (const FieldPicture& p : field_pictures)
+    write_png((folder / p.file).string(), p.make(*loaded.scene, *loaded.accel, fields));
+}
+
+Json fields_json(const Bench& bench, const Stand& stand, const Method& method) {
+  Json list = Json::array();
+  for (const FieldPicture& p : field_pictures) {
+    const fs::path image = fields_folder(stand, method.name) / p.file;
+    if (fs::exists(bench.options.folder / image)) list.push_back({{"title", p.title}, {"image", image.string()}});
+  }
+  return list;
+}
+
 /// One seed of one scene: the methods that have no run yet.
 void run_seed(Bench& bench, const Stand& stand, const LoadedScene& loaded, size_t seed_index) {
   const Suite& suite = bench.suite;
@@ -88,6 +127,8 @@ void run_seed(Bench& bench, const Stand& stand, const LoadedScene& loaded, size_
   };
   if (!race(loaded, suite.budget, stand.reference->image, seed_index, racers, follow)) return;
   bench.done += double(racers.size());
+  if (seed_index == 0)
+    for (const Racer& racer : racers) show_fields(bench, stand, loaded, racer);
   write_runs(bench, stand, racers);
 }
 
@@ -142,7 +183,7 @@ Json method_json(const Bench& bench, const Stand& stand, const Method& method) {
           {"options", options_json(method.options)},
           {"image", fs::exists(bench.options.folder / image) ? Json(image.string()) : Json(nullptr)},
           {"techniques", techniques_json(bench, stand, method)},
-          {"fields", Json::array()},
+          {"fields", fields_json(bench, stand, method)},
           {"runs", runs}};
 }
 
