@@ -151,10 +151,10 @@ FieldCell learn_cell(Work& w, uint32_t cell, double area, double paths, Trees& o
   take(w, old.root);
   const float bare = weigh(w.nodes, 0, Vec2(0), 1, 0);
   const float floor = 0.03f * bare / pi;
-  float total = weigh(w.nodes, 0, Vec2(0), 1, floor);
+  const float total = weigh(w.nodes, 0, Vec2(0), 1, floor);
   if (total > 0) {
     reshape(w, 0, 0, total);
-    total = weigh(w.nodes, 0, Vec2(0), 1, floor);
+    weigh(w.nodes, 0, Vec2(0), 1, floor);
   }
   next.root = append(out, w.nodes);
   if (t.directs[cell] > 0) {

@@ -18,10 +18,10 @@ End end_of(const Fields& fields, const Vertex& v, const Vec3& d, Side side) {
   e.q = v.shines;
   if (v.guide.cell == none || !connectable(v.guide)) return e;
   e.cell = v.guide.cell;
-  const float scatters = luminance(albedo(v.guide.bsdf, v.guide.wo_local)) * inv_pi;
+  const float share = scatters(v.guide);
   const FieldCell& q = fields.q.cells[e.cell];
   const FieldCell& w = fields.w.cells[e.cell];
-  e.q += scatters * q.total, e.w = scatters * w.total;
+  e.q += share * q.total, e.w = share * w.total;
   e.own = side == Side::camera ? q.visits : w.visits;
   e.other = side == Side::camera ? w.visits : q.visits;
   return e;

@@ -45,7 +45,7 @@ bool add_if_visible(Work& work, Candidate& c, int s, int t) {
 // What a pixel's error counts for where the lens sees this vertex: errors are judged relative to the image, so the
 // lens's importance is divided by what the field expects the pixel to be. (G5)
 float relative_importance(const Fields& fields, const Guide& guide) {
-  const float out = luminance(albedo(guide.bsdf, guide.wo_local)) * inv_pi * fields.q.cells[guide.cell].total;
+  const float out = scatters(guide) * fields.q.cells[guide.cell].total;
   const float typical = float(fields.q.unit);
   return typical / std::sqrt(sqr(out) + sqr(0.02f * typical));
 }
@@ -53,7 +53,9 @@ float relative_importance(const Fields& fields, const Guide& guide) {
 // What a vertex received from the light, or the lens, itself: nothing where something is in the way.
 void teach_direct(const Work& work, const Guide& guide, float received) {
   if (!work.sample.teaches || guide.cell == none) return;
-  record_direct(work.job.walk.fields->of(guide.side), work.job.training->of(guide.side), guide.cell, received);
+  const Fields& fields = *work.job.walk.fields;
+  if (guide.side == Side::light) received *= relative_importance(fields, guide);
+  record_direct(fields.of(guide.side), work.job.training->of(guide.side), guide.cell, received);
 }
 
 // The light subpath, and t = 1 at every vertex. The light itself, s = 1, is left to the camera ray that sees it.
@@ -75,9 +77,7 @@ void trace_light_subpath(Work& work) {
     const bool seen =
         join_camera(*job.scene, work.sample.lens, light, light.n, work.light_share, job.walk.light_paths, c) &&
         add_if_visible(work, c, light.n, 1);
-    const Guide& guide = light[light.n - 1].guide;
-    if (work.sample.teaches && guide.cell != none)
-      teach_direct(work, guide, seen ? luminance(c.arrives) * relative_importance(*job.walk.fields, guide) : 0);
+    teach_direct(work, light[light.n - 1].guide, seen ? luminance(c.arrives) : 0);
   }
 }
 

@@ -1,5 +1,5 @@
 // Enters: lights, and the field W.
-// Leaves: starts of light subpaths whose direction W guides, with densities (M7).
+// Leaves: starts of light subpaths whose direction W guides, with densities (docs/method.md, "Two learned fields").
 #pragma once
 
 #include "ajar/field/fields.h"

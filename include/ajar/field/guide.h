@@ -1,4 +1,4 @@
-// Enters: a bsdf at a point (later also the point's cells of Q and W).
+// Enters: a bsdf at a point, and the point's cell of the learned fields.
 // Leaves: the one seam through which a direction is sampled or its density evaluated, for camera and light subpaths
 // alike.
 #pragma once
@@ -55,6 +55,8 @@ inline bool connectable(const Guide& guide) { return guide.bsdf.has_smooth && !g
 inline bool may_scatter(const Guide& guide, const Vec3& w) {
   return !guide.bsdf.opaque || glm::dot(guide.frame.n, w) > 0;
 }
+/// Radiance that a vertex scatters to any one direction per irradiance, taken as diffuse [1/sr]; luminance.
+inline float scatters(const Guide& guide) { return luminance(albedo(guide.bsdf, guide.wo_local)) * inv_pi; }
 /// What a subpath of throughput beta that arrives at a vertex is expected to bring, by the field of its side: beta
 /// times the radiance (importance) that the vertex scatters, as luminance. 0 where the fields do not know.
 struct Promise {
