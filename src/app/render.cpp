@@ -66,10 +66,12 @@ LearnOptions learn_options(const Arguments& a, const std::string& integrator) {
   if (!is_guided(integrator))
     for (const auto& [option, given] : asked)
       if (given)
-        throw Error(
-            fmt::format("{}: the integrator {} learns no fields; add --integrator guided-bdpt", option, integrator));
+        throw Error(fmt::format("{}: the integrator {} learns no fields; add --integrator guided-bdpt or guided-path",
+                                option, integrator));
   if (!a.load_fields.empty() && !a.resume.empty())
     throw Error("--load-fields: a checkpoint brings its own fields; leave out either this or --resume");
+  if (integrator == "guided-path" && a.guide == "light")
+    throw Error("--guide light: guided-path has no light subpaths; leave it out, or take guided-bdpt");
   if (!a.save_fields.empty()) check_file(a.save_fields);
   LearnOptions o;
   o.guided = a.guide == "camera" ? Guided::camera : a.guide == "light" ? Guided::light : Guided::both;
@@ -219,7 +221,7 @@ void run_render(Arguments a) {
   const std::string key = checkpoint_key(run, state.film);
   if (!a.resume.empty()) load_checkpoint(a.resume, key, state);
   if (!a.load_fields.empty())
-    go_on_from(load_fields(a.load_fields, scene_key(scene)), run.options.learn, state.learning, state.film);
+    go_on_from(load_fields(a.load_fields, scene_key(scene)), learn_options(run.options), state.learning, state.film);
   Log log = open_log(a, state.film);
   Progress progress = make_progress(a.quiet);
   double saved = state.stats.seconds;
@@ -255,7 +257,8 @@ void add_render(CLI::App& app) {
   c->add_option("-o,--out", a->out,
                 "image to write: .exr, or .png for a tonemapped one (default: the scene's name, here)");
   c->add_flag("--png", a->png, "write a tonemapped PNG beside the EXR");
-  c->add_option("--integrator", a->integrator, "path, bdpt, light or guided-bdpt (default: the scene's, else bdpt)");
+  c->add_option("--integrator", a->integrator,
+                "path, bdpt, light, guided-path or guided-bdpt (default: the scene's, else bdpt)");
   c->add_option("--spp", a->spp, "samples per pixel")->check(CLI::Range(1, 1 << 30));
   c->add_option("--time", a->time, "wall time to render: 90s, 5m, 1h");
   c->add_option("--cpu-time", a->cpu_time, "CPU time of all threads to render");

@@ -41,7 +41,7 @@ nlohmann::ordered_json options_json(const Run& run, const Film& film) {
                               {"sampler", name_of(o.sampler)},
                               {"defines", run.defines}};
   if (!is_guided(o.integrator)) return j;
-  j["guide"] = name_of(o.learn.guided);
+  j["guide"] = name_of(learn_options(o).guided);
   j["field_memory"] = o.learn.memory;
   if (!run.load_fields.empty()) j["load_fields"] = run.load_fields;
   if (!run.save_fields.empty()) j["save_fields"] = run.save_fields;

@@ -1,5 +1,6 @@
 // Bidirectional path tracing (Veach 1997, chapter 10): all strategies (s, t) with t >= 1, joined by multiple importance
-// sampling.
+// sampling. Without light paths (WalkOptions) it is path tracing that keeps its vertices, and can teach: s = 0 and s
+// = 1.
 
 #include "job.h"
 
@@ -145,7 +146,8 @@ void teach(Work& work) {
 
 void trace_bdpt(const Job& job, Sample& sample, Scratch& scratch) {
   Work work{job, sample, scratch};
-  trace_light_subpath(work);
+  scratch.light.n = 0;
+  if (job.walk.light_paths > 0) trace_light_subpath(work);
   Subpath& camera = scratch.camera;
   Walk walk;
   start_camera(*job.scene, job.walk, sample.raster, sample.lens, camera, walk);

@@ -24,6 +24,7 @@ struct Integrator {
 constexpr Integrator integrators[] = {{"path", trace_path, false},
                                       {"bdpt", trace_bdpt, true},
                                       {"light", trace_light, true},
+                                      {"guided-path", trace_bdpt, false, true},
                                       {"guided-bdpt", trace_bdpt, true, true}};
 
 const Integrator& find_integrator(const std::string& name) {
@@ -85,7 +86,7 @@ Job make_job(const Scene& scene, const Accel& accel, const RenderOptions& option
   job.walk.max_edges = options.max_depth < 0 ? deepest : std::min(options.max_depth, deepest);
   job.walk.roulette_from = options.roulette_depth;
   job.walk.heuristic = options.heuristic;
-  job.walk.light_paths = double(film.pixels());
+  job.walk.light_paths = film.splats ? double(film.pixels()) : 0;
   job.sampler = options.sampler;
   job.seed = options.seed;
   job.techniques = options.techniques;
@@ -122,7 +123,7 @@ using Scratches = tbb::enumerable_thread_specific<Scratch>;
 void teach(RenderState& state, const RenderOptions& options) {
   const double wall = wall_seconds(), cpu = process_cpu_seconds();
   const uint32_t dropped = state.film.dropped;
-  end_pass(state.learning, options.learn, state.film);
+  end_pass(state.learning, learn_options(options), state.film);
   if (state.film.dropped != dropped) state.pyramid = {};
   state.stats.learn_seconds += wall_seconds() - wall;
   state.stats.learn_cpu_seconds += process_cpu_seconds() - cpu;
@@ -137,6 +138,12 @@ std::vector<std::string> integrator_names() {
 }
 
 bool is_guided(const std::string& integrator) { return find_integrator(integrator).guided; }
+
+LearnOptions learn_options(const RenderOptions& options) {
+  LearnOptions o = options.learn;
+  if (!find_integrator(options.integrator).splats) o.guided = Guided::camera;
+  return o;
+}
 
 double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -165,7 +172,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   if (find_integrator(options.integrator).guided) {
     job.learning = &state.learning, job.training = &state.learning.training;
     job.walk.fields = &state.learning.fields;
-    job.walk.inner_share = guided_inner_share;
+    job.walk.inner_share = film.splats ? guided_inner_share : 0;
   }
   double wall0 = 0, cpu0 = 0;
   const auto start_clocks = [&] {

@@ -142,6 +142,7 @@ TEST_F(FieldsUsed, WhatMakesNoSenseIsAnError) {
       {{"--guide", "light"}, "light", "--guide: the integrator light learns no fields"},
       {{"--field-memory", "8M"}, "bdpt", "--field-memory: the integrator bdpt learns no fields"},
       {{"--guide", "neither"}, "guided-bdpt", "--guide: neither not in"},
+      {{"--guide", "light"}, "guided-path", "--guide light: guided-path has no light subpaths"},
       {{"--load-fields", none_such}, "guided-bdpt", none_such + ": no such file of fields"},
       {{"--load-fields", box}, "guided-bdpt", box + ": not a file of fields of this version"},
       {{"--load-fields", fields, "--resume", state}, "guided-bdpt", "leave out either this or --resume"},

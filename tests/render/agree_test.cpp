@@ -1,4 +1,4 @@
-// path = bdpt = light tracing = guided bdpt by z-test, one small scene for each feature. What an integrator cannot
+// path = bdpt = light tracing = guided path = guided bdpt by z-test, one small scene for each feature. What an integrator cannot
 // sample is left out: light tracing makes no light seen over mirrors and glass alone and no environment seen directly;
 // path tracing finds no caustic of a light without extent.
 #include <gtest/gtest.h>
@@ -394,6 +394,8 @@ TEST_P(Agree, InEveryBlock) {
   if (initials.find('p') != std::string::npos) {
     options.integrator = "path";
     expect_same(measure(scene, options, {.batches = 16, .passes = 120, .seed = 2000}), bdpt, "path, bdpt");
+    options.integrator = "guided-path";
+    expect_same(measure(scene, options, {.batches = 16, .passes = 40, .seed = 5000}), bdpt, "guided-path, bdpt");
   }
   if (initials.find('l') != std::string::npos) {
     options.integrator = "light";

@@ -26,7 +26,8 @@ struct WalkOptions {
   int sure_vertices = 64;          ///< beyond, no subpath is sure to go on
   const Fields* fields = nullptr;  ///< guide the subpaths; null: unguided
   double inner_share = 1;          ///< Shares::inner of all joins (join/mis.h)
-  double light_paths = 1;          ///< light subpaths that splat to the film, for each camera sample of a pixel
+  double light_paths = 1;          ///< light subpaths that splat to the film, for each camera sample of a pixel; with
+                                   ///< 0, and an inner share of 0, weights are of s = 0 and s = 1 alone
 };
 
 /// The ray that will find the next vertex, and what that vertex needs to know about its making.

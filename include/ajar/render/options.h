@@ -31,5 +31,7 @@ inline constexpr int deepest = 4096;
 std::vector<std::string> integrator_names();
 /// Whether it learns fields; throws Error for an unknown integrator.
 bool is_guided(const std::string& integrator);
+/// What its fields are learned with: an integrator without light subpaths guides the camera's alone.
+LearnOptions learn_options(const RenderOptions& options);
 
 }  // namespace ajar
