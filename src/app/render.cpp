@@ -24,12 +24,13 @@ namespace {
 struct Arguments {
   std::string scene, out, size, time, cpu_time, heuristic = "power", sampler = "sobol", log, reference, checkpoint,
                                                 resume, techniques, integrator, save_fields, load_fields,
-                                                guide = "both", field_memory;
+                                                guide = "both", field_memory, field_structure, field_rule, field_rate;
   std::optional<std::string> noise;
   std::vector<std::string> defines, features;
   int spp = 0, max_depth = std::numeric_limits<int>::min(), threads = 0, roulette_depth = 5;
   uint64_t seed = 0;
-  bool png = false, half = false, quiet = false, lenient = false;
+  int train = 0;
+  bool no_next_event = false, png = false, half = false, quiet = false, lenient = false;
 };
 
 double parse_duration(const std::string& option, const std::string& text) {
@@ -58,11 +59,26 @@ double parse_noise(const std::string& text) {
   return value;
 }
 
+const std::map<std::string, Structure>& structures() {
+  static const std::map<std::string, Structure> names = {
+      {"adaptive", Structure::adaptive}, {"grid", Structure::grid}, {"probes", Structure::probes}};
+  return names;
+}
+const std::map<std::string, Rule>& rules() {
+  static const std::map<std::string, Rule> names = {
+      {"expected", Rule::expected}, {"max", Rule::max}, {"return", Rule::returned}};
+  return names;
+}
+
 LearnOptions learn_options(const Arguments& a, const std::string& integrator) {
   const std::pair<const char*, bool> asked[] = {{"--save-fields", !a.save_fields.empty()},
                                                 {"--load-fields", !a.load_fields.empty()},
                                                 {"--guide", a.guide != "both"},
-                                                {"--field-memory", !a.field_memory.empty()}};
+                                                {"--field-memory", !a.field_memory.empty()},
+                                                {"--field-structure", !a.field_structure.empty()},
+                                                {"--field-rule", !a.field_rule.empty()},
+                                                {"--field-rate", !a.field_rate.empty()},
+                                                {"--train", a.train > 0}};
   if (!is_guided(integrator))
     for (const auto& [option, given] : asked)
       if (given)
@@ -70,13 +86,29 @@ LearnOptions learn_options(const Arguments& a, const std::string& integrator) {
                                 option, integrator));
   if (!a.load_fields.empty() && !a.resume.empty())
     throw Error("--load-fields: a checkpoint brings its own fields; leave out either this or --resume");
+  if (!a.load_fields.empty() && !a.field_structure.empty())
+    throw Error("--load-fields: stored fields bring their structure; leave out either this or --field-structure");
+  if (a.train % 2) throw Error(fmt::format("--train {}: passes come in pairs; write an even number", a.train));
   if (integrator == "guided-path" && a.guide == "light")
     throw Error("--guide light: guided-path has no light subpaths; leave it out, or take guided-bdpt");
   if (!a.save_fields.empty()) check_file(a.save_fields);
   LearnOptions o;
   o.guided = a.guide == "camera" ? Guided::camera : a.guide == "light" ? Guided::light : Guided::both;
+  if (!a.field_structure.empty()) o.structure = structures().at(a.field_structure);
+  if (!a.field_rule.empty()) o.rule = rules().at(a.field_rule);
+  if (a.field_rate == "visits") o.forget = 1;
+  o.train = uint32_t(a.train);
   if (!a.field_memory.empty()) o.memory = parse_bytes("--field-memory", a.field_memory);
   return o;
+}
+
+void check_next_event(const RenderOptions& o, const Scene& scene) {
+  if (o.next_event) return;
+  if (o.integrator != "path" && o.integrator != "guided-path")
+    throw Error(fmt::format("--no-next-event: {} needs it; take path or guided-path", o.integrator));
+  for (const Light& light : scene.lights)
+    if (light.kind == LightKind::point || light.kind == LightKind::spot || light.kind == LightKind::directional)
+      throw Error("--no-next-event: the scene has lights without extent, which no ray can hit; leave it out");
 }
 
 RenderOptions render_options(const Arguments& a, Scene& scene) {
@@ -110,6 +142,8 @@ RenderOptions render_options(const Arguments& a, Scene& scene) {
   o.heuristic = a.heuristic == "balance" ? Heuristic::balance : Heuristic::power;
   o.sampler = a.sampler == "independent" ? SamplerKind::independent : SamplerKind::sobol;
   o.techniques = !a.techniques.empty();
+  o.next_event = !a.no_next_event;
+  check_next_event(o, scene);
   o.learn = learn_options(a, o.integrator);
   return o;
 }
@@ -286,6 +320,16 @@ void add_render(CLI::App& app) {
   c->add_option("--guide", a->guide, "which subpaths the learned fields guide: both, camera or light")
       ->check(CLI::IsMember({"both", "camera", "light"}));
   c->add_option("--field-memory", a->field_memory, "memory that learned fields may take: 512K, 8M (default), 1G");
+  c->add_option("--field-structure", a->field_structure, "of learned fields: adaptive (default), grid or probes")
+      ->check(CLI::IsMember(structures()));
+  c->add_option("--field-rule", a->field_rule, "how they are learned: expected (default), max or return")
+      ->check(CLI::IsMember(rules()));
+  c->add_option("--field-rate", a->field_rate,
+                "of learning: recent (default: older evidence counts half), visits (1 / (1 + visits))")
+      ->check(CLI::IsMember({"recent", "visits"}));
+  c->add_option("--train", a->train, "passes that train the fields and are dropped; after them the fields are frozen")
+      ->check(CLI::Range(2, 1 << 20));
+  c->add_flag("--no-next-event", a->no_next_event, "lights are found by hitting them alone: path and guided-path");
   c->add_option("--save-fields", a->save_fields, "file to save the learned fields to");
   c->add_option("--load-fields", a->load_fields, "fields to start from, saved from a render of the same scene");
   c->add_flag("--half", a->half, "16-bit floats in the EXR");

@@ -16,6 +16,11 @@ const char* name_of(SamplerKind k) { return k == SamplerKind::sobol ? "sobol" : 
 
 const char* name_of(Guided g) { return g == Guided::both ? "both" : g == Guided::camera ? "camera" : "light"; }
 
+const char* name_of(Structure s) {
+  return s == Structure::adaptive ? "adaptive" : s == Structure::grid ? "grid" : "probes";
+}
+const char* name_of(Rule r) { return r == Rule::expected ? "expected" : r == Rule::max ? "max" : "return"; }
+
 double peak_bytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -39,10 +44,15 @@ nlohmann::ordered_json options_json(const Run& run, const Film& film) {
                               {"roulette_depth", o.roulette_depth},
                               {"heuristic", name_of(o.heuristic)},
                               {"sampler", name_of(o.sampler)},
+                              {"next_event", o.next_event},
                               {"defines", run.defines}};
   if (!is_guided(o.integrator)) return j;
   j["guide"] = name_of(learn_options(o).guided);
   j["field_memory"] = o.learn.memory;
+  j["field_structure"] = name_of(o.learn.structure);
+  j["field_rule"] = name_of(o.learn.rule);
+  j["field_rate"] = o.learn.forget == 1 ? "visits" : "recent";
+  j["train"] = o.learn.train;
   if (!run.load_fields.empty()) j["load_fields"] = run.load_fields;
   if (!run.save_fields.empty()) j["save_fields"] = run.save_fields;
   return j;

@@ -1,5 +1,7 @@
 #include "ajar/field/cells.h"
 
+#include <algorithm>
+
 #include "ajar/core/sampler.h"
 
 namespace ajar {
@@ -26,6 +28,58 @@ const CellTable::Slot* find_slot(const CellTable& table, CellKey key) {
   }
 }
 
+// Nearest probe to a point with a similar normal, or its opposite; none where there is none within reach.
+struct Search {
+  const std::vector<Probe>& probes;
+  Vec3 p, n;
+  float nearest2;
+  uint32_t found = none;
+};
+
+void search(Search& s, size_t from, size_t to) {
+  constexpr float similar = 0.8f;
+  while (from < to) {
+    const size_t middle = (from + to) / 2;
+    const Probe& probe = s.probes[middle];
+    const float d2 = length2(probe.p - s.p);
+    if (d2 < s.nearest2 && std::abs(glm::dot(probe.n, s.n)) > similar) s.nearest2 = d2, s.found = uint32_t(middle);
+    const float across = s.p[int(probe.axis)] - probe.p[int(probe.axis)];
+    if (across < 0) {
+      search(s, from, middle);
+      from = middle + 1;
+    } else {
+      search(s, middle + 1, to);
+      to = middle;
+    }
+    if (sqr(across) >= s.nearest2) return;
+  }
+}
+
+Place find_probe(const CellTable& table, const Vec3& p, const Vec3& n) {
+  Search s{table.probes, p, n, sqr(4 * table.width)};
+  search(s, 0, table.probes.size());
+  if (s.found == none) return {};
+  const bool back = glm::dot(table.probes[s.found].n, n) < 0;
+  const CellKey key = make_key(0, back, {s.found & most_coordinate, s.found >> bits, 0});
+  const CellTable::Slot* slot = find_slot(table, key);
+  return slot ? Place{slot->cell, 0} : Place{none, key};
+}
+
+// Orders a range of probes as a kd-tree.
+void order(std::vector<Probe>& probes, size_t from, size_t to) {
+  if (from >= to) return;
+  Vec3 low(infinity), high(-infinity);
+  for (size_t i = from; i < to; ++i) low = glm::min(low, probes[i].p), high = glm::max(high, probes[i].p);
+  const Vec3 extent = high - low;
+  const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+  const size_t middle = (from + to) / 2;
+  const auto at = [&](size_t i) { return probes.begin() + ptrdiff_t(i); };
+  std::nth_element(at(from), at(middle), at(to), [&](const Probe& a, const Probe& b) { return a.p[axis] < b.p[axis]; });
+  probes[middle].axis = uint32_t(axis);
+  order(probes, from, middle);
+  order(probes, middle + 1, to);
+}
+
 void place(CellTable& table, const CellTable::Slot& slot) {
   const size_t mask = table.slots.size() - 1;
   size_t i = mix64(slot.key) & mask;
@@ -44,7 +98,17 @@ CellTable make_cell_table(const Vec3& center, float radius) {
   return t;
 }
 
+CellTable make_probe_table(std::vector<Probe> probes, double area) {
+  CellTable t;
+  t.width = std::max(float(std::sqrt(area / double(std::max(probes.size(), size_t(1))))), 1e-18f);
+  t.slots.resize(256);
+  order(probes, 0, probes.size());
+  t.probes = std::move(probes);
+  return t;
+}
+
 Place find(const CellTable& table, const Vec3& p, const Vec3& n) {
+  if (!table.probes.empty()) return find_probe(table, p, n);
   const Vec3 q = (p - table.origin) * (float(1 << most_cell_levels) / table.width);
   const glm::uvec3 c(glm::clamp(q, Vec3(0), Vec3(float(most_coordinate))));
   const uint32_t bin = normal_bin(n);

@@ -6,13 +6,31 @@ namespace ajar {
 
 const Field& Fields::of(Side side) const { return side == Side::camera ? q : w; }
 
+size_t find_stratum(const Fields& fields, const Field& field, uint32_t cell, const Vec3& local) {
+  uint32_t node = field.cells[cell].root;
+  if (fields.structure != Structure::adaptive) {
+    const Patch at = patch_of(local);
+    return 16 * size_t(field.nodes[node].child(at.zone)) + size_t(at.segment);
+  }
+  Vec2 at = to_square(local);
+  int i = descend(at);
+  while (field.nodes[node].is_divided(i)) {
+    node = field.nodes[node].child(i);
+    i = descend(at);
+  }
+  return 16 * size_t(node) + size_t(i);
+}
+
 float pdf(const Fields& fields, const Field& field, uint32_t cell, const Vec3& w) {
   const Vec3 local = fields.cells[cell].frame.to_local(w);
   if (!(local.z > 0)) return 0;
+  if (fields.structure != Structure::adaptive) return patch_density(field.nodes, field.cells[cell].root, local);
   return density(field.nodes, field.cells[cell].root, to_square(local)) * square_density(local);
 }
 
 Vec3 sample(const Fields& fields, const Field& field, uint32_t cell, const Vec2& u, float& pdf) {
+  if (fields.structure != Structure::adaptive)
+    return fields.cells[cell].frame.to_world(sample_patch(field.nodes, field.cells[cell].root, u, pdf));
   float over_square;
   const Vec2 at = sample(field.nodes, field.cells[cell].root, u, over_square);
   const Vec3 local = from_square(at);
@@ -24,7 +42,8 @@ size_t bytes(const Fields& f) {
   const auto of = [](const Field& x) {
     return x.cells.size() * sizeof(FieldCell) + x.nodes.size() * (sizeof(StrataNode) + 32 * sizeof(float));
   };
-  return f.table.slots.size() * sizeof(CellTable::Slot) + f.cells.size() * sizeof(Cell) + of(f.q) + of(f.w);
+  return f.table.slots.size() * sizeof(CellTable::Slot) + f.table.probes.size() * sizeof(Probe) +
+         f.cells.size() * sizeof(Cell) + of(f.q) + of(f.w);
 }
 
 }  // namespace ajar

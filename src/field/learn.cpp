@@ -4,6 +4,7 @@
 
 #include "ajar/core/frame.h"
 #include "fixed.h"
+#include "probes.h"
 
 namespace ajar {
 namespace {
@@ -26,6 +27,8 @@ struct Node {
 };
 
 struct Work {
+  Structure structure = Structure::adaptive;
+  Rule rule = Rule::expected;
   const Field* field = nullptr;
   const Tallies* tallies = nullptr;
   const LearnOptions* options = nullptr;
@@ -74,6 +77,34 @@ float weigh(std::vector<Node>& nodes, int32_t at, const Vec2& corner, float widt
   return sum;
 }
 
+// The same for patches; returns irradiance over all of them. The grid's masses are without the cosine, as Comi's.
+float weigh_patches(std::vector<Node>& nodes, float floor, Structure structure) {
+  float sum = 0;
+  for (int zone = no_zones; zone < 16; ++zone) {
+    const float cosine = patch_cosine(zone);
+    Node& child = nodes[size_t(nodes[0].child[zone])];
+    float radiance = 0;
+    for (int i = no_segments; i < 16; ++i) radiance += child.mass[i] = child.mean[i] + floor;
+    nodes[0].mass[zone] = radiance * (structure == Structure::grid ? patch_angle : cosine);
+    sum += radiance * cosine;
+  }
+  return sum;
+}
+
+float weigh(Work& w, float floor) {
+  if (w.structure == Structure::adaptive) return weigh(w.nodes, 0, Vec2(0), 1, floor);
+  return weigh_patches(w.nodes, floor, w.structure);
+}
+
+// Largest mean of all strata.
+float best(const std::vector<Node>& nodes) {
+  float most = 0;
+  for (const Node& n : nodes)
+    for (int i = 0; i < 16; ++i)
+      if (n.child[i] < 0) most = std::max(most, n.mean[i]);
+  return most;
+}
+
 // Divides heavy strata, joins light ones.
 void reshape(Work& w, int32_t at, int level, float total) {
   for (int i = 0; i < 16; ++i) {
@@ -105,16 +136,18 @@ void reshape(Work& w, int32_t at, int level, float total) {
   }
 }
 
-// Writes shares in steps of 2^-16; every stratum of positive mass gets one at least.
-void quantise(const Node& from, StrataNode& to) {
+// Writes shares in steps of 2^-16; every stratum gets one at least, but those before the first one in use.
+void quantise(const Node& from, int first, StrataNode& to) {
   float sum = 0;
   for (const float m : from.mass) sum += m;
   double before = 0;
   uint32_t last = 0;
   for (int i = 0; i < 16; ++i) {
     to.before[i] = uint16_t(last);
+    if (i < first) continue;
     before += from.mass[i];
-    const uint32_t next = sum > 0 ? uint32_t(std::lround(before / sum * 65536)) : 4096u * uint32_t(i + 1);
+    const uint32_t next =
+        uint32_t(sum > 0 ? std::lround(before / sum * 65536) : 65536 * (i + 1 - first) / (16 - first));
     last = std::clamp(next, last + 1, 65536u - uint32_t(15 - i));
   }
 }
@@ -125,13 +158,18 @@ struct Trees {
   std::vector<float> mean, weight;
 };
 
-uint32_t append(Trees& out, const std::vector<Node>& nodes) {
+// First place in use of a node of patches.
+int first_of(Structure structure, bool is_root) {
+  return structure == Structure::adaptive ? 0 : is_root ? no_zones : no_segments;
+}
+
+uint32_t append(Trees& out, const std::vector<Node>& nodes, Structure structure) {
   const uint32_t root = uint32_t(out.nodes.size());
   std::vector<int32_t> order = {0};
   for (size_t k = 0; k < order.size(); ++k) {
     const Node& from = nodes[size_t(order[k])];
     StrataNode to;
-    quantise(from, to);
+    quantise(from, first_of(structure, k == 0), to);
     to.children = root + uint32_t(order.size());
     for (int i = 0; i < 16; ++i) {
       if (from.child[i] >= 0) to.divided |= uint16_t(1u << i), order.push_back(from.child[i]);
@@ -149,19 +187,19 @@ FieldCell learn_cell(Work& w, uint32_t cell, double area, double paths, Trees& o
   FieldCell next = old;
   w.nodes.clear();
   take(w, old.root);
-  const float bare = weigh(w.nodes, 0, Vec2(0), 1, 0);
+  const float bare = weigh(w, 0);
   const float floor = 0.03f * bare / pi;
-  const float total = weigh(w.nodes, 0, Vec2(0), 1, floor);
-  if (total > 0) {
+  const float total = weigh(w, floor);
+  if (total > 0 && w.structure == Structure::adaptive) {
     reshape(w, 0, 0, total);
-    weigh(w.nodes, 0, Vec2(0), 1, floor);
+    weigh(w, floor);
   }
-  next.root = append(out, w.nodes);
+  next.root = append(out, w.nodes, w.structure);
   if (t.directs[cell] > 0) {
     const double mean = double(t.direct[cell]) * value_step * w.field->unit / double(t.directs[cell]);
     next.direct = old.visits > 0 ? float(0.5 * (old.direct + mean)) : float(mean);
   }
-  next.total = next.direct + bare;
+  next.total = next.direct + (w.rule == Rule::max ? pi * best(w.nodes) : bare);
   float weight = 0;
   for (const Node& n : w.nodes)
     for (int i = 0; i < 16; ++i) weight += n.child[i] < 0 ? n.weight[i] : 0;
@@ -180,7 +218,7 @@ Field learn_field(const Fields& fields, const Field& field, const Tallies& talli
   next.unit = field.unit;
   next.cells.resize(n);
   tbb::parallel_for(0u, blocks, [&](uint32_t b) {
-    Work work{&field, &tallies, &options, {}};
+    Work work{fields.structure, fields.rule, &field, &tallies, &options, {}};
     for (uint32_t c = b * block; c < std::min(n, (b + 1) * block); ++c) {
       const double edge = double(fields.table.edge(level_of(fields.cells[c].key)));
       next.cells[c] = learn_cell(work, c, edge * edge, paths, trees[b]);
@@ -197,16 +235,24 @@ Field learn_field(const Fields& fields, const Field& field, const Tallies& talli
   return next;
 }
 
+// Blank strata.
+void add_strata(Field& field, Structure structure) {
+  const bool patches = structure != Structure::adaptive;
+  const size_t root = field.nodes.size();
+  field.nodes.resize(root + (patches ? 1 + zones : 1));
+  for (size_t i = root; i < field.nodes.size(); ++i) quantise({}, first_of(structure, i == root), field.nodes[i]);
+  if (patches)
+    field.nodes[root].divided = uint16_t(0xffff << no_zones), field.nodes[root].children = uint32_t(root + 1);
+  field.mean.resize(16 * field.nodes.size());
+  field.weight.resize(16 * field.nodes.size());
+}
+
 // Copies a cell's strata from another, or makes blank ones.
-void add_cell(Field& field, uint32_t from) {
+void add_cell(Field& field, uint32_t from, Structure structure) {
   FieldCell cell;
   cell.root = uint32_t(field.nodes.size());
   if (from == none) {
-    StrataNode node;
-    for (int i = 0; i < 16; ++i) node.before[i] = uint16_t(4096 * i);
-    field.nodes.push_back(node);
-    field.mean.insert(field.mean.end(), 16, 0.0f);
-    field.weight.insert(field.weight.end(), 16, 0.0f);
+    add_strata(field, structure);
   } else {
     const FieldCell& parent = field.cells[from];
     const uint32_t shift = cell.root - parent.root;
@@ -241,16 +287,42 @@ void add_cells(Fields& fields, const Sightings& sightings, const LearnOptions& o
     const uint32_t id = uint32_t(fields.cells.size());
     fields.cells.push_back({key, parent == none ? make_frame(n) : fields.cells[parent].frame, 0});
     insert(fields.table, key, id);
-    add_cell(fields.q, parent);
-    add_cell(fields.w, parent);
+    add_cell(fields.q, parent, fields.structure);
+    add_cell(fields.w, parent, fields.structure);
   }
 }
 
 }  // namespace
 
-Fields start_fields(const Scene& scene, double pixels) {
+namespace {
+
+// Cells of patches that the memory has room for, with their places in the hash table.
+double affordable_cells(size_t memory) {
+  constexpr double strata = (1 + zones) * (sizeof(StrataNode) + 32 * sizeof(float));
+  return double(memory) /
+         (2 * (strata + sizeof(FieldCell)) + sizeof(Cell) + 3 * sizeof(CellTable::Slot) + sizeof(Probe));
+}
+
+CellTable start_table(const Scene& scene, const LearnOptions& options) {
+  const double cells = affordable_cells(options.memory);
+  if (options.structure == Structure::probes) {
+    double area = 0;
+    std::vector<Probe> probes = place_probes(scene, uint32_t(std::clamp(cells, 1.0, 1e7)), area);
+    return make_probe_table(std::move(probes), area);
+  }
+  CellTable table = make_cell_table(scene.center, scene.radius);
+  // A plane that leans cuts through half as many cubes again as its area has squares.
+  if (options.structure == Structure::grid)
+    table.width = std::clamp(float(std::sqrt(1.5 * area(scene) / cells)), scene.radius / 100, scene.radius);
+  return table;
+}
+
+}  // namespace
+
+Fields start_fields(const Scene& scene, double pixels, const LearnOptions& options) {
   Fields f;
-  f.table = make_cell_table(scene.center, scene.radius);
+  f.structure = options.structure, f.rule = options.rule;
+  f.table = start_table(scene, options);
   double watts = 0;
   for (uint32_t i = 0; i < scene.lights.size(); ++i) watts += power(scene, i);
   const double area = 4 * std::numbers::pi * double(scene.radius) * double(scene.radius);
@@ -262,6 +334,7 @@ Fields start_fields(const Scene& scene, double pixels) {
 Fields learn(const Fields& fields, const Training& training, const Sightings& sightings, double paths,
              const LearnOptions& options) {
   Fields next;
+  next.structure = fields.structure, next.rule = fields.rule;
   next.generation = fields.generation + 1;
   next.table = fields.table;
   next.cells = fields.cells;
@@ -270,6 +343,7 @@ Fields learn(const Fields& fields, const Training& training, const Sightings& si
   for (uint32_t c = 0; c < next.cells.size(); ++c) {
     Cell& cell = next.cells[c];
     cell.seen += float(training.q.visits[c] + training.w.visits[c]);
+    if (next.structure != Structure::adaptive) continue;
     if (cell.seen > options.divide_cell && level_of(cell.key) < most_cell_levels) set_divided(next.table, cell.key);
   }
   add_cells(next, sightings, options);

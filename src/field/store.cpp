@@ -11,7 +11,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind fields_kind = {"AJARfd01", "file of fields", "make one with --save-fields",
+constexpr FileKind fields_kind = {"AJARfd02", "file of fields", "make one with --save-fields",
                                   "learn the fields again with --save-fields"};
 
 bool is_amount(float x) { return x >= 0 && x < infinity; }
@@ -30,7 +30,8 @@ template <class Io, class Part>
 void tallies_members(Io& io, Part& t) {
   io.array(t.value), io.array(t.weight), io.array(t.direct), io.array(t.directs), io.array(t.visits);
 }
-static_assert(sizeof(FieldCell) == 20 && sizeof(StrataNode) == 40 && sizeof(Cell) == 48 && sizeof(Sighting) == 32,
+static_assert(sizeof(FieldCell) == 20 && sizeof(StrataNode) == 40 && sizeof(Cell) == 48 && sizeof(Sighting) == 32 &&
+                  sizeof(Probe) == 28,
               "a member was added or taken away: list it here and raise the versions of the files");
 
 void write(Writer& w, const Field& f) {
@@ -42,10 +43,22 @@ void write(Writer& w, const Field& f) {
   w.bytes(f.weight.data(), f.weight.size() * sizeof(float));
 }
 
-bool is_sound(const StrataNode& n) {
-  if (n.before[0] != 0) return false;
-  for (int i = 0; i < 15; ++i)
+// first: the first stratum in use.
+bool is_sound(const StrataNode& n, int first) {
+  for (int i = 0; i <= first; ++i)
+    if (n.before[i] != 0) return false;
+  for (int i = first; i < 15; ++i)
     if (n.before[i] >= n.before[i + 1]) return false;
+  return true;
+}
+
+// Whether the nodes under root are zones and their segments, as patches are.
+bool is_patches(const std::vector<StrataNode>& nodes, uint32_t root) {
+  if (!is_sound(nodes[root], no_zones) || nodes[root].divided != uint16_t(0xffff << no_zones)) return false;
+  for (int i = no_zones; i < 16; ++i) {
+    const StrataNode& zone = nodes[nodes[root].child(i)];
+    if (zone.divided != 0 || !is_sound(zone, no_segments)) return false;
+  }
   return true;
 }
 
@@ -70,7 +83,7 @@ bool is_sound(const FieldCell& c) {
   return is_amount(c.direct) && is_amount(c.total) && c.mix >= 0 && c.mix < 1 && is_amount(c.visits);
 }
 
-void read(Reader& r, size_t cells, Field& f) {
+void read(Reader& r, Structure structure, size_t cells, Field& f) {
   r.value(f.unit);
   r.require(f.unit > 0 && f.unit < double(infinity));
   f.cells.resize(cells);
@@ -81,7 +94,7 @@ void read(Reader& r, size_t cells, Field& f) {
   f.nodes.resize(r.count(sizeof(StrataNode) - 2 + 32 * sizeof(float)));
   for (StrataNode& n : f.nodes) {
     r.value(n.before), r.value(n.divided), r.value(n.children);
-    r.require(is_sound(n));
+    r.require(structure != Structure::adaptive || is_sound(n, 0));
   }
   f.mean.resize(16 * f.nodes.size());
   f.weight.resize(16 * f.nodes.size());
@@ -90,7 +103,8 @@ void read(Reader& r, size_t cells, Field& f) {
   r.require(std::all_of(f.mean.begin(), f.mean.end(), is_amount) &&
             std::all_of(f.weight.begin(), f.weight.end(), is_amount));
   std::vector<bool> claimed(f.nodes.size());
-  for (const FieldCell& c : f.cells) r.require(claim(f.nodes, c.root, claimed));
+  for (const FieldCell& c : f.cells)
+    r.require(claim(f.nodes, c.root, claimed) && (structure == Structure::adaptive || is_patches(f.nodes, c.root)));
 }
 
 bool is_sound(const Frame& f) {
@@ -114,7 +128,10 @@ uint64_t sum_of(const std::vector<T>& v, uint64_t sum) {
 }  // namespace
 
 void write(Writer& w, const Fields& fields) {
+  w.value(fields.structure), w.value(fields.rule);
   w.value(fields.generation), w.value(fields.table.origin), w.value(fields.table.width);
+  w.value(uint64_t(fields.table.probes.size()));
+  for (const Probe& p : fields.table.probes) w.value(p.p), w.value(p.n), w.value(p.axis);
   // The table's divided marks go with the cells; the table itself is made anew.
   std::vector<char> divided(fields.cells.size());
   for (const CellTable::Slot& s : fields.table.slots)
@@ -130,9 +147,16 @@ void write(Writer& w, const Fields& fields) {
 
 void read(Reader& r, Fields& fields) {
   fields.table = make_cell_table(Vec3(0), 1);
+  r.value(fields.structure), r.value(fields.rule);
+  r.require(fields.structure <= Structure::probes && fields.rule <= Rule::returned);
   r.value(fields.generation), r.value(fields.table.origin), r.value(fields.table.width);
   r.require(is_finite(fields.table.origin) && is_amount(fields.table.width) &&
             is_amount(float(1 << most_cell_levels) / fields.table.width));
+  fields.table.probes.resize(r.count(sizeof(Probe)));
+  for (Probe& p : fields.table.probes) {
+    r.value(p.p), r.value(p.n), r.value(p.axis);
+    r.require(is_finite(p.p) && is_finite(p.n) && p.axis < 3);
+  }
   fields.cells.resize(r.count(sizeof(CellKey)));
   for (uint32_t i = 0; i < fields.cells.size(); ++i) {
     Cell& c = fields.cells[i];
@@ -142,8 +166,8 @@ void read(Reader& r, Fields& fields) {
     insert(fields.table, c.key, i);
     if (divided) set_divided(fields.table, c.key);
   }
-  read(r, fields.cells.size(), fields.q);
-  read(r, fields.cells.size(), fields.w);
+  read(r, fields.structure, fields.cells.size(), fields.q);
+  read(r, fields.structure, fields.cells.size(), fields.w);
 }
 
 void write(Writer& w, const Training& training) { tallies_members(w, training.q), tallies_members(w, training.w); }

@@ -16,18 +16,6 @@ void resize(Tallies& t, const Field& f) {
   t.visits.assign(f.cells.size(), 0);
 }
 
-// Where the tallies of the stratum of a direction are.
-size_t find_stratum(const Field& field, uint32_t cell, const Vec3& local) {
-  Vec2 at = to_square(local);
-  uint32_t node = field.cells[cell].root;
-  int i = descend(at);
-  while (field.nodes[node].is_divided(i)) {
-    node = field.nodes[node].child(i);
-    i = descend(at);
-  }
-  return 16 * size_t(node) + size_t(i);
-}
-
 }  // namespace
 
 Tallies& Training::of(Side side) { return side == Side::camera ? q : w; }
@@ -43,7 +31,7 @@ void record(const Fields& fields, const Field& field, Tallies& tallies, uint32_t
             float weight) {
   const Vec3 local = fields.cells[cell].frame.to_local(w);
   if (!(local.z > 0) || !(weight > 0) || !(value >= 0)) return;
-  const size_t stratum = find_stratum(field, cell, local);
+  const size_t stratum = find_stratum(fields, field, cell, local);
   const double clamped = std::min(double(weight), largest_weight);
   add(tallies.weight[stratum], to_fixed(clamped, weight_step));
   if (value > 0) add(tallies.value[stratum], to_fixed(clamped * value / field.unit, value_step));

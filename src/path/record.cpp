@@ -49,9 +49,19 @@ void record_segment(const Fields& fields, Training& training, const Vertex& a, c
   record(fields, fields.w, training.w, to.cell, -d, from.w, at_b);
 }
 
+// The field of the side that traced the segment, alone: the path knows nothing of the other's.
+void record_return(const Fields& fields, Training& training, const Vertex& a, const Vertex& b, Side side,
+                   float brought) {
+  const Vec3 d = -b.guide.wo;
+  const float cosine = std::abs(glm::dot(a.ng, d)), cosine_b = std::abs(glm::dot(b.ng, d));
+  if (a.guide.cell == none || !(cosine > 1e-4f) || !(cosine_b > 1e-4f)) return;
+  const double pdf = b.own * b.distance2 / cosine_b;
+  record(fields, fields.of(side), training.of(side), a.guide.cell, d, brought, float(cosine * inv_pi / pdf));
+}
+
 // The lamp's own cell learns where W lies, too: it guides emission.
 void record_emission(const Fields& fields, Training& training, Sightings& sightings, const Vertex& lamp,
-                     const Vertex& first) {
+                     const Vertex& first, float brought) {
   if (lamp.infinite || lamp.point.delta_position) return;
   const Place at = find(fields.table, lamp.p, lamp.ng);
   if (at.missing) record_missing(sightings, at.missing, lamp.ng);
@@ -62,23 +72,42 @@ void record_emission(const Fields& fields, Training& training, Sightings& sighti
   const float cosine = glm::dot(lamp.ng, d);
   if (!(to.cosine > 1e-4f) || !(cosine > 0)) return;
   const double pdf = first.own * first.distance2 / to.cosine;
-  record(fields, fields.w, training.w, at.cell, d, to.w, float(cosine * inv_pi / pdf));
+  record(fields, fields.w, training.w, at.cell, d, fields.rule == Rule::returned ? brought : to.w,
+         float(cosine * inv_pi / pdf));
+}
+
+// What a vertex scatters back along the path, by what the path itself went on to find; next is the same of the vertex
+// after it.
+float brought_by(const Subpath& subpath, int i, float next) {
+  const Vertex& v = subpath[i];
+  float sum = v.shines;
+  if (connectable(v.guide)) sum += scatters(v.guide) * v.received;
+  const float here = luminance(v.beta);
+  if (i + 1 < subpath.n && here > 0) sum += next * luminance(subpath[i + 1].beta) / here;
+  return sum;
 }
 
 }  // namespace
 
 void record_subpath(const Fields& fields, Training& training, Sightings& sightings, const Subpath& subpath, Side side) {
   Tallies& own_tallies = training.of(side);
-  if (side == Side::light && subpath.n > 1) record_emission(fields, training, sightings, subpath[0], subpath[1]);
-  for (int i = 1; i < subpath.n; ++i) {
+  float brought = 0;
+  for (int i = subpath.n - 1; i >= 1; --i) {
     const Vertex& b = subpath[i];
+    if (fields.rule == Rule::returned) brought = brought_by(subpath, i, brought);
     if (connectable(b.guide)) {
       if (b.guide.missing) record_missing(sightings, b.guide.missing, glm::dot(b.ng, b.guide.wo) < 0 ? -b.ng : b.ng);
       if (b.guide.cell != none) record_visit(own_tallies, b.guide.cell);
     }
     const Vertex& a = subpath[i - 1];
-    if (i > 1 && !a.delta && connectable(a.guide)) record_segment(fields, training, a, b, side);
+    if (i == 1 || a.delta || !connectable(a.guide)) continue;
+    if (fields.rule == Rule::returned)
+      record_return(fields, training, a, b, side, brought);
+    else
+      record_segment(fields, training, a, b, side);
   }
+  if (side == Side::light && subpath.n > 1)
+    record_emission(fields, training, sightings, subpath[0], subpath[1], brought);
 }
 
 }  // namespace ajar

@@ -96,7 +96,7 @@ bool step(const Scene& scene, const Accel& accel, const WalkOptions& options, Su
   v.back = walk.planar ? 1 : (before.ng == Vec3(0) ? 1 : std::abs(glm::dot(before.ng, walk.d))) / v.distance2;
   v.sum = walk.sum;
   v.delta = false, v.infinite = false;
-  v.shines = 0;
+  v.shines = 0, v.received = 0;
   v.shape = hit.shape, v.instance = hit.instance;
   if (subpath.n == 2) {
     if (walk.side == Side::camera)

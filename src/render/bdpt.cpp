@@ -17,6 +17,7 @@ struct Work {
 
 float weigh(const Work& work, Candidate& c) {
   c.shares.inner = work.job.walk.inner_share;
+  if (!work.job.next_event) c.shares.light_first = 0;
   return float(weight(work.job.walk.heuristic, c));
 }
 
@@ -52,10 +53,12 @@ float relative_importance(const Fields& fields, const Guide& guide) {
 }
 
 // What a vertex received from the light, or the lens, itself: nothing where something is in the way.
-void teach_direct(const Work& work, const Guide& guide, float received) {
+void teach_direct(const Work& work, Vertex& v, float received) {
+  const Guide& guide = v.guide;
   if (!work.sample.teaches || guide.cell == none) return;
   const Fields& fields = *work.job.walk.fields;
   if (guide.side == Side::light) received *= relative_importance(fields, guide);
+  v.received = received;
   record_direct(fields.of(guide.side), work.job.training->of(guide.side), guide.cell, received);
 }
 
@@ -78,7 +81,7 @@ void trace_light_subpath(Work& work) {
     const bool seen =
         join_camera(*job.scene, work.sample.lens, light, light.n, work.light_share, job.walk.light_paths, c) &&
         add_if_visible(work, c, light.n, 1);
-    teach_direct(work, light[light.n - 1].guide, seen ? luminance(c.arrives) : 0);
+    teach_direct(work, light[light.n - 1], seen ? luminance(c.arrives) : 0);
   }
 }
 
@@ -97,13 +100,13 @@ void join_surface(Work& work, const Surface& surface) {
 // s = 1: next-event estimation.
 void join_next_event(Work& work) {
   const Job& job = work.job;
-  const Subpath& camera = work.scratch.camera;
+  Subpath& camera = work.scratch.camera;
   const int t = camera.n;
-  if (job.scene->lights.empty()) return;
+  if (!job.next_event || job.scene->lights.empty()) return;
   Candidate c;
   const bool lit = join_light(*job.scene, job.walk.fields, work.sample.sampler, camera, t, job.walk.light_paths, c) &&
                    add_if_visible(work, c, 1, t);
-  teach_direct(work, camera[t - 1].guide, lit ? luminance(c.arrives) : 0);
+  teach_direct(work, camera[t - 1], lit ? luminance(c.arrives) : 0);
 }
 
 // All joins at the camera subpath's last vertex.

@@ -7,7 +7,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind checkpoint_kind = {"AJARck03", "checkpoint", "render once with --checkpoint",
+constexpr FileKind checkpoint_kind = {"AJARck04", "checkpoint", "render once with --checkpoint",
                                       "start again without --resume"};
 
 // One list of fields for both ways.
@@ -25,14 +25,14 @@ void stats_fields(Io& io, State& stats) {
 }
 
 void write(Writer& w, const Learning& l) {
-  w.value(l.passes), w.value(l.first);
+  w.value(l.passes), w.value(l.train), w.value(l.first);
   write(w, l.fields);
   write(w, l.training);
   write(w, l.sightings);
 }
 
 void read(Reader& r, Learning& l) {
-  r.value(l.passes), r.value(l.first);
+  r.value(l.passes), r.value(l.train), r.value(l.first);
   read(r, l.fields);
   read(r, l.fields, l.training);
   read(r, l.sightings);

@@ -17,6 +17,7 @@ struct Job {
   SamplerKind sampler = SamplerKind::sobol;
   uint64_t seed = 0;
   bool techniques = false;
+  bool next_event = true;
   const Learning* learning = nullptr;  ///< null: unguided
   Training* training = nullptr;
 };
@@ -31,7 +32,7 @@ struct Sample {
   float filter = 1;  ///< what the filter makes of the camera path's radiance
   Sampler sampler;
   bool teaches = false;  ///< what its subpaths see is recorded
-  Rgb value{0};  ///< radiance found by the camera path, unfiltered
+  Rgb value{0};          ///< radiance found by the camera path, unfiltered
 };
 
 /// Storage of one thread at work on one chunk; kept from chunk to chunk.

@@ -5,7 +5,9 @@
 namespace ajar {
 namespace {
 
-bool is_young(const Learning& l) { return l.fields.generation < young_generations; }
+uint32_t youth(const Learning& l) { return l.train > 0 ? l.train : young_generations; }
+bool is_young(const Learning& l) { return l.fields.generation < youth(l); }
+bool is_frozen(const Learning& l) { return l.train > 0 && !is_young(l); }
 
 // Passes from one lesson to the next.
 uint32_t interval(const Learning& l) {
@@ -14,9 +16,10 @@ uint32_t interval(const Learning& l) {
 
 }  // namespace
 
-Learning start_learning(const Scene& scene, const Film& film) {
+Learning start_learning(const Scene& scene, const Film& film, const LearnOptions& options) {
   Learning l;
-  l.fields = start_fields(scene, double(film.pixels()));
+  l.train = options.train;
+  l.fields = start_fields(scene, double(film.pixels()), options);
   return l;
 }
 
@@ -24,6 +27,7 @@ void go_on_from(StoredFields stored, const LearnOptions& options, Learning& l, F
   // Importance counts pixels, and this film may have more or fewer of them.
   const double scale = l.fields.w.unit / stored.fields.w.unit;
   l.fields = std::move(stored.fields);
+  l.fields.rule = options.rule;
   Field& w = l.fields.w;
   w.unit *= scale;
   for (float& m : w.mean) m *= float(scale);
@@ -38,17 +42,17 @@ StoredFields stored_fields(const Scene& scene, const Learning& l, const Film& fi
 }
 
 bool is_recorded(const Learning& learning, uint64_t pixel, uint32_t pass) {
-  return is_young(learning) || hash(pixel, pass) % rare_records == 0;
+  return is_young(learning) || (!is_frozen(learning) && hash(pixel, pass) % rare_records == 0);
 }
 
 void end_pass(Learning& l, const LearnOptions& options, Film& film) {
-  if (++l.passes < interval(l)) return;
+  if (is_frozen(l) || ++l.passes < interval(l)) return;
   const double paths = double(film.pixels()) * l.passes / (is_young(l) ? 1 : rare_records);
   l.fields = learn(l.fields, l.training, l.sightings, paths, options);
   l.training = start_training(l.fields);
   l.sightings.clear();
   l.passes = 0;
-  if (l.fields.generation == young_generations) drop_passes(film);
+  if (l.fields.generation == youth(l)) drop_passes(film);
 }
 
 }  // namespace ajar

@@ -65,7 +65,7 @@ bool scatter(const Job& job, const Guide& guide, const Surface& at, int edges, S
   f.t_min = 0, f.t_max = infinity;
   f.from = at.p;
   f.pdf = s.pdf;
-  f.alone = s.delta;
+  f.alone = s.delta || !job.next_event;
   return true;
 }
 
@@ -89,7 +89,7 @@ void trace_path(const Job& job, Sample& sample, Scratch& scratch) {
     if (scene.shapes[hit.shape].light != none) value += f.beta * hit_light(scene, h, at, f.from, f.d, f.pdf, f.alone);
     if (edges >= job.walk.max_edges) return;
     make_guide(scene, job.walk.fields, Side::camera, at, -f.d, guide);
-    if (connectable(guide) && !scene.lights.empty())
+    if (job.next_event && connectable(guide) && !scene.lights.empty())
       value += f.beta * direct(job, guide, at, sample.sampler, scratch.counters);
     if (!scatter(job, guide, at, edges, sample.sampler, f)) return;
   }

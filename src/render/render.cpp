@@ -90,6 +90,7 @@ Job make_job(const Scene& scene, const Accel& accel, const RenderOptions& option
   job.sampler = options.sampler;
   job.seed = options.seed;
   job.techniques = options.techniques;
+  job.next_event = options.next_event;
   return job;
 }
 
@@ -159,7 +160,7 @@ RenderState start_render(const Scene& scene, const RenderOptions& options) {
   RenderState state;
   const Integrator& integrator = find_integrator(options.integrator);
   state.film = make_film(scene.camera, scene.filter, integrator.splats);
-  if (integrator.guided) state.learning = start_learning(scene, state.film);
+  if (integrator.guided) state.learning = start_learning(scene, state.film, options.learn);
   return state;
 }
 

@@ -91,11 +91,7 @@ std::vector<glm::ivec2> spread(const Looks& looks, const Field& field, int borde
 
 // What the field's stratum is believed to be, towards unit world direction w above the cell.
 float mean_of(const Fields& fields, const Field& field, uint32_t cell, const Vec3& w) {
-  Vec2 at = to_square(fields.cells[cell].frame.to_local(w));
-  uint32_t node = field.cells[cell].root;
-  int i = descend(at);
-  for (; field.nodes[node].is_divided(i); i = descend(at)) node = field.nodes[node].child(i);
-  return field.mean[16 * size_t(node) + size_t(i)];
+  return field.mean[find_stratum(fields, field, cell, fields.cells[cell].frame.to_local(w))];
 }
 
 // Draws the strata of a cell as a disk about a pixel.

@@ -15,6 +15,12 @@ using CellKey = uint64_t;
 
 inline constexpr int most_cell_levels = 10;
 
+/// A point on a surface, with a hemisphere on either side of it.
+struct Probe {
+  Vec3 p{0}, n{0, 0, 1};
+  uint32_t axis = 0;  ///< along which it divides the probes beside it (make_probe_table)
+};
+
 /// Cells of all levels in one open hash table.
 struct CellTable {
   struct Slot {
@@ -23,8 +29,9 @@ struct CellTable {
     bool divided = false;
   };
   Vec3 origin{0};
-  float width = 1;          ///< edge of the cubes of level 0
-  std::vector<Slot> slots;  ///< a power of two of them
+  float width = 1;            ///< edge of the cubes of level 0
+  std::vector<Slot> slots;    ///< a power of two of them
+  std::vector<Probe> probes;  ///< not empty: cells are theirs, not cubes; a kd-tree: the middle of a range divides it
   size_t used = 0;
 
   float edge(int level) const { return std::ldexp(width, -level); }
@@ -37,6 +44,8 @@ struct Place {
 };
 
 CellTable make_cell_table(const Vec3& center, float radius);
+/// area: of the surfaces that the probes stand for [m^2].
+CellTable make_probe_table(std::vector<Probe> probes, double area);
 /// n: unit normal on the side that matters.
 Place find(const CellTable& table, const Vec3& p, const Vec3& n);
 void insert(CellTable& table, CellKey key, uint32_t cell);

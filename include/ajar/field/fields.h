@@ -36,7 +36,22 @@ struct Cell {
   float seen = 0;  ///< vertices since it was made
 };
 
+/// How the scene is divided into cells and a cell's hemisphere into strata (docs/method.md, "Structures").
+enum class Structure : uint8_t {
+  adaptive,  ///< cubes and strata that divide where the field asks for it
+  grid,      ///< cubes of one size, 72 patches, sampled by their field alone (Comi 2019)
+  probes     ///< hemispheres at points on surfaces, 72 patches, sampled by field times cosine (Dahm and Keller 2017)
+};
+/// What a segment's end is taken to scatter, for the record at its other end (docs/method.md, "Rules").
+enum class Rule : uint8_t {
+  expected,  ///< what its own strata bring (Dahm and Keller 2017, equation 5)
+  max,       ///< as if all directions brought what the best of them brings (equation 1)
+  returned   ///< what the path itself brought back from there
+};
+
 struct Fields {
+  Structure structure = Structure::adaptive;
+  Rule rule = Rule::expected;
   CellTable table;
   std::vector<Cell> cells;
   Field q, w;
@@ -45,10 +60,12 @@ struct Fields {
   const Field& of(Side side) const;
 };
 
+/// Where mean and weight of the stratum of a local direction above the cell's horizon are.
+size_t find_stratum(const Fields& fields, const Field& field, uint32_t cell, const Vec3& local);
 /// Density per solid angle of the field's strata in a cell towards unit world direction w: 0 below the cell's horizon.
 float pdf(const Fields& fields, const Field& field, uint32_t cell, const Vec3& w);
-/// Draws a unit world direction in proportion to the field times the cosine at the cell; leaves its density per solid
-/// angle.
+/// Draws a unit world direction in proportion to the field times the cosine at the cell (grid: to the field); leaves
+/// its density per solid angle.
 Vec3 sample(const Fields& fields, const Field& field, uint32_t cell, const Vec2& u, float& pdf);
 /// Bytes of all that is learned.
 size_t bytes(const Fields& fields);

@@ -11,17 +11,20 @@ namespace ajar {
 enum class Guided : uint8_t { both, camera, light };
 
 struct LearnOptions {
+  Structure structure = Structure::adaptive;  ///< of fields that start from nothing
+  Rule rule = Rule::expected;
   size_t memory = size_t(8) << 20;  ///< bytes that fields may take
   float divide_cell = 600;          ///< vertices after which a cell is divided
   float divide_stratum = 0.03f;     ///< share of its cell's field above which a stratum is divided
   float trust = 32;                 ///< records after which half of the largest mix is given to the strata
   float mix = 0.8f;                 ///< largest g of (G4)
-  float forget = 0.5f;              ///< share of older evidence that is kept
+  float forget = 0.5f;              ///< share of older evidence that is kept; 1: a stratum is the mean of its records
+  uint32_t train = 0;               ///< passes of training after which fields are frozen; 0: they learn all along
   Guided guided = Guided::both;
 };
 
-/// Fields that know nothing: every look-up finds no cell.
-Fields start_fields(const Scene& scene, double pixels);
+/// Fields that know nothing: every look-up finds no cell. Grid and probes are as fine as the memory lets them be.
+Fields start_fields(const Scene& scene, double pixels, const LearnOptions& options = {});
 /// paths: pairs of camera and light subpaths that were recorded.
 Fields learn(const Fields& fields, const Training& training, const Sightings& sightings, double paths,
              const LearnOptions& options);

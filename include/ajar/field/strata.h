@@ -46,6 +46,29 @@ inline float square_density(const Vec3& local) {
   return local.z * (m2 > 0 ? (x2 + y2) / m2 : 1) * 0.25f;
 }
 
+/// The other division (Comi 2019, 3.2.2): zones of the hemisphere of equal height, each cut into segments: 72 patches
+/// of equal solid angle. They are a tree of two levels, zones and segments, in the last of a node's sixteen places; the
+/// places before them are empty.
+inline constexpr int zones = 6, segments = 12, no_zones = 16 - zones, no_segments = 16 - segments;
+inline constexpr float patch_angle = 2 * pi / (zones * segments);  ///< [sr]
+
+/// Places of a direction's zone and segment.
+struct Patch {
+  int zone = no_zones, segment = no_segments;
+};
+inline Patch patch_of(const Vec3& local) {
+  const float turn = std::atan2(local.y, local.x) / (2 * pi);
+  const int zone = int(local.z * zones), segment = int((turn < 0 ? turn + 1 : turn) * segments);
+  return {no_zones + std::clamp(zone, 0, zones - 1), no_segments + std::clamp(segment, 0, segments - 1)};
+}
+/// Integral of the cosine over a patch of this zone [sr].
+inline float patch_cosine(int zone) { return patch_angle * (float(zone - no_zones) + 0.5f) / zones; }
+
+/// Density per solid angle of the patches under node root.
+float patch_density(const std::vector<StrataNode>& nodes, uint32_t root, const Vec3& local);
+/// Draws a direction, uniform within its patch; u in [0,1)^2. Leaves its density per solid angle.
+Vec3 sample_patch(const std::vector<StrataNode>& nodes, uint32_t root, const Vec2& u, float& density);
+
 /// Density over the unit square of the tree under node root.
 float density(const std::vector<StrataNode>& nodes, uint32_t root, const Vec2& at);
 /// Draws a point of the unit square; u in [0,1)^2. Leaves its density.

@@ -21,7 +21,9 @@ struct Vertex {
   double sum = 0;  ///< S of the vertex *before* this one, mis.h (R3)
   bool delta = false;     ///< the subpath went on from here by a delta event
   bool infinite = false;  ///< vertex 0: a direction rather than a place
-  float shines = 0;       ///< luminance of the light that the subpath ran into here, times its MIS weight
+  float received =
+      0;             ///< luminance of what next-event estimation (the lens) brought here, per area; for Rule::returned
+  float shines = 0;  ///< luminance of the light that the subpath ran into here, times its MIS weight
   uint32_t shape = none;
   uint32_t instance = none;
   Guide guide;

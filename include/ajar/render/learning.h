@@ -14,6 +14,7 @@ struct Learning {
   Training training;
   Sightings sightings;
   uint32_t passes = 0;  ///< recorded since
+  uint32_t train = 0;   ///< LearnOptions::train
   uint32_t first = 0;   ///< number of the render's first pass; even; not 0 where it goes on from stored fields
 };
 
@@ -22,7 +23,7 @@ struct Learning {
 /// lessons double.
 inline constexpr uint32_t young_generations = 8, rare_records = 8;
 
-Learning start_learning(const Scene& scene, const Film& film);
+Learning start_learning(const Scene& scene, const Film& film, const LearnOptions& options);
 /// Puts stored fields in place of those that know nothing. Passes are numbered on from those that the fields were
 /// learned from: a pass guided by what its own numbers taught would be biased. Call before the first pass.
 void go_on_from(StoredFields stored, const LearnOptions& options, Learning& learning, Film& film);

@@ -21,6 +21,7 @@ struct RenderOptions {
   int roulette_depth = 5;  ///< edges of a subpath that are traced without roulette
   Heuristic heuristic = Heuristic::power;
   SamplerKind sampler = SamplerKind::sobol;
+  bool next_event = true;   ///< next-event estimation; only integrators without light subpaths can do without
   LearnOptions learn;       ///< guided integrators only
   bool techniques = false;  ///< keep an image of every (s, t)
 };
