@@ -8,6 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <thread>
 
 #include "ajar/core/error.h"
@@ -59,16 +60,12 @@ double parse_noise(const std::string& text) {
   return value;
 }
 
-const std::map<std::string, Structure>& structures() {
-  static const std::map<std::string, Structure> names = {
-      {"adaptive", Structure::adaptive}, {"grid", Structure::grid}, {"probes", Structure::probes}};
-  return names;
+// Index of a name that the option's check let pass.
+template <class Names>
+size_t index_of(const Names& names, const std::string& name) {
+  return size_t(std::find(std::begin(names), std::end(names), name) - std::begin(names));
 }
-const std::map<std::string, Rule>& rules() {
-  static const std::map<std::string, Rule> names = {
-      {"expected", Rule::expected}, {"max", Rule::max}, {"return", Rule::returned}};
-  return names;
-}
+std::vector<std::string> listed(std::span<const char* const> names) { return {names.begin(), names.end()}; }
 
 LearnOptions learn_options(const Arguments& a, const std::string& integrator) {
   const std::pair<const char*, bool> asked[] = {{"--save-fields", !a.save_fields.empty()},
@@ -94,8 +91,8 @@ LearnOptions learn_options(const Arguments& a, const std::string& integrator) {
   if (!a.save_fields.empty()) check_file(a.save_fields);
   LearnOptions o;
   o.guided = a.guide == "camera" ? Guided::camera : a.guide == "light" ? Guided::light : Guided::both;
-  if (!a.field_structure.empty()) o.structure = structures().at(a.field_structure);
-  if (!a.field_rule.empty()) o.rule = rules().at(a.field_rule);
+  if (!a.field_structure.empty()) o.structure = Structure(index_of(structure_names, a.field_structure));
+  if (!a.field_rule.empty()) o.rule = Rule(index_of(rule_names, a.field_rule));
   if (a.field_rate == "visits") o.forget = 1;
   o.train = uint32_t(a.train);
   if (!a.field_memory.empty()) o.memory = parse_bytes("--field-memory", a.field_memory);
@@ -321,9 +318,9 @@ void add_render(CLI::App& app) {
       ->check(CLI::IsMember({"both", "camera", "light"}));
   c->add_option("--field-memory", a->field_memory, "memory that learned fields may take: 512K, 8M (default), 1G");
   c->add_option("--field-structure", a->field_structure, "of learned fields: adaptive (default), grid or probes")
-      ->check(CLI::IsMember(structures()));
+      ->check(CLI::IsMember(listed(structure_names)));
   c->add_option("--field-rule", a->field_rule, "how they are learned: expected (default), max or return")
-      ->check(CLI::IsMember(rules()));
+      ->check(CLI::IsMember(listed(rule_names)));
   c->add_option("--field-rate", a->field_rate,
                 "of learning: recent (default: older evidence counts half), visits (1 / (1 + visits))")
       ->check(CLI::IsMember({"recent", "visits"}));

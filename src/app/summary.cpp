@@ -16,11 +16,6 @@ const char* name_of(SamplerKind k) { return k == SamplerKind::sobol ? "sobol" : 
 
 const char* name_of(Guided g) { return g == Guided::both ? "both" : g == Guided::camera ? "camera" : "light"; }
 
-const char* name_of(Structure s) {
-  return s == Structure::adaptive ? "adaptive" : s == Structure::grid ? "grid" : "probes";
-}
-const char* name_of(Rule r) { return r == Rule::expected ? "expected" : r == Rule::max ? "max" : "return"; }
-
 double peak_bytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -49,8 +44,8 @@ nlohmann::ordered_json options_json(const Run& run, const Film& film) {
   if (!is_guided(o.integrator)) return j;
   j["guide"] = name_of(learn_options(o).guided);
   j["field_memory"] = o.learn.memory;
-  j["field_structure"] = name_of(o.learn.structure);
-  j["field_rule"] = name_of(o.learn.rule);
+  j["field_structure"] = structure_names[size_t(o.learn.structure)];
+  j["field_rule"] = rule_names[size_t(o.learn.rule)];
   j["field_rate"] = o.learn.forget == 1 ? "visits" : "recent";
   j["train"] = o.learn.train;
   if (!run.load_fields.empty()) j["load_fields"] = run.load_fields;
@@ -60,7 +55,8 @@ nlohmann::ordered_json options_json(const Run& run, const Film& film) {
 
 nlohmann::ordered_json fields_json(const Learning& learning, const Film& film) {
   const Fields& f = learning.fields;
-  return {{"bytes", bytes(f)},
+  return {{"structure", structure_names[size_t(f.structure)]},
+          {"bytes", bytes(f)},
           {"cells", f.cells.size()},
           {"nodes", {{"q", f.q.nodes.size()}, {"w", f.w.nodes.size()}}},
           {"generation", f.generation},

@@ -3,8 +3,8 @@
 #include <tbb/parallel_for.h>
 
 #include "ajar/core/frame.h"
+#include "ajar/field/probes.h"
 #include "fixed.h"
-#include "probes.h"
 
 namespace ajar {
 namespace {

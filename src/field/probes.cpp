@@ -1,4 +1,4 @@
-#include "probes.h"
+#include "ajar/field/probes.h"
 
 #include "ajar/core/sampler.h"
 #include "ajar/core/warp.h"

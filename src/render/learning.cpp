@@ -41,6 +41,8 @@ StoredFields stored_fields(const Scene& scene, const Learning& l, const Film& fi
   return {l.fields, scene_key(scene), film.dropped + film.passes + (film.chunks > 0)};
 }
 
+bool in_training(const Learning& l) { return l.train > 0 && is_young(l); }
+
 bool is_recorded(const Learning& learning, uint64_t pixel, uint32_t pass) {
   return is_young(learning) || (!is_frozen(learning) && hash(pixel, pass) % rare_records == 0);
 }

@@ -192,6 +192,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   const uint32_t all = chunk_count(film);
   const auto out_of_budget = [&] {
     read_clocks();
+    if (in_training(state.learning) && !timed) return false;
     if (!timed && options.noise <= 0) return film.passes >= options.spp;
     if (options.noise > 0) {
       if (options.spp > 0 && film.passes >= options.spp) return true;

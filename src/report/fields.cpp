@@ -161,7 +161,8 @@ std::string describe(const StoredFields& stored) {
   for (const Cell& c : f.cells) ++by_level[size_t(level_of(c.key))];
   return fmt::format("scene: {}\n", stored.scene) +
          fmt::format("learned {} times, from {} passes; {} bytes\n", f.generation, stored.passes, bytes(f)) +
-         fmt::format("{} cells; {}; edge at level 0: {:.3g}\n", f.cells.size(), counts(by_level), f.table.width) +
+         fmt::format("{}, {} cells; {}; edge at level 0: {:.3g}\n", structure_names[size_t(f.structure)],
+                     f.cells.size(), counts(by_level), f.table.width) +
          describe(f.q, "Q", "irradiance [W/m^2]") + describe(f.w, "W", "importance [pixels/m^2]");
 }
 

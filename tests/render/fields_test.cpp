@@ -15,6 +15,7 @@ namespace {
 struct Stage {
   const char* name;
   Scene (*make)();
+  Structure structure = Structure::adaptive;
 };
 void PrintTo(const Stage& s, std::ostream* out) { *out << s.name; }
 
@@ -23,7 +24,9 @@ const Stage stages[] = {{"two_rooms", [] { return two_rooms(20); }},
                         {"glass_ball", [] { return glass_ball(); }},
                         {"bump_plane", [] { return bump_plane(); }},
                         {"rough_plastic", [] { return with_material(MaterialKind::roughplastic, 0.4f); }},
-                        {"mask", [] { return with_material(MaterialKind::mask); }}};
+                        {"mask", [] { return with_material(MaterialKind::mask); }},
+                        {"grid", [] { return two_rooms(20); }, Structure::grid},
+                        {"probes", [] { return two_rooms(20); }, Structure::probes}};
 
 // A vertex that scatters, as it was found.
 struct Spot {
@@ -48,6 +51,7 @@ struct Trained {
     RenderOptions o = statistical("guided-bdpt");
     o.spp = 7;  // all of them young: learning would go on
     o.learn.trust = 8, o.learn.divide_cell = 400;
+    o.learn.structure = s.structure;
     state = rendered(scene, accel, o);
   }
   const Fields& fields() const { return state.learning.fields; }
@@ -85,6 +89,21 @@ Guide guide_at(const Trained& t, Side side, const Surface& surface, const Vec3& 
 
 constexpr kit::ChiOptions chi_options{.rows = 16, .columns = 32, .samples = 60'000, .quadrature = 4, .level = 1e-6};
 
+// A cell's hemisphere as a square, over which its strata are flat and its field's density is measured.
+Vec2 flat(const Fields& f, const Vec3& local) {
+  if (f.structure == Structure::adaptive) return to_square(local);
+  const float turn = std::atan2(local.y, local.x) / (2 * pi);
+  return glm::clamp(Vec2(turn < 0 ? turn + 1 : turn, local.z), Vec2(0), Vec2(one_minus_epsilon));
+}
+Vec3 unflat(const Fields& f, const Vec2& at) {
+  if (f.structure == Structure::adaptive) return from_square(at);
+  const float r = safe_sqrt(1 - at.y * at.y);
+  return {r * std::cos(2 * pi * at.x), r * std::sin(2 * pi * at.x), at.y};
+}
+float flat_density(const Fields& f, const Vec3& local) {
+  return f.structure == Structure::adaptive ? square_density(local) : 1 / (2 * pi);
+}
+
 class LearnedFields : public testing::TestWithParam<Stage> {};
 
 TEST_P(LearnedFields, SampleAgreesWithDensity) {
@@ -92,6 +111,8 @@ TEST_P(LearnedFields, SampleAgreesWithDensity) {
   const Fields& f = t.fields();
   ASSERT_GT(f.cells.size(), 20u);
   int divided = 0;
+  const bool patches = f.structure != Structure::adaptive;
+  const int rows = patches ? 3 * zones : 32, columns = patches ? 3 * segments : 32;
   for (const Side side : {Side::camera, Side::light}) {
     const Field& field = f.of(side);
     std::vector<uint32_t> trusted(f.cells.size());
@@ -109,13 +130,13 @@ TEST_P(LearnedFields, SampleAgreesWithDensity) {
             const Vec3 w = sample(f, field, cell, u, p);
             if (!(p > 0)) return std::nullopt;
             EXPECT_NEAR(glm::length(w), 1, 1e-5);
-            return to_square(f.cells[cell].frame.to_local(w));
+            return flat(f, f.cells[cell].frame.to_local(w));
           },
           [&](const Vec2& at) {
-            const Vec3 local = from_square(at);
-            return double(pdf(f, field, cell, f.cells[cell].frame.to_world(local)) / square_density(local));
+            const Vec3 local = unflat(f, at);
+            return double(pdf(f, field, cell, f.cells[cell].frame.to_world(local)) / flat_density(f, local));
           },
-          {.rows = 32, .columns = 32, .samples = 60'000, .quadrature = 4, .level = 1e-6});
+          {.rows = rows, .columns = columns, .samples = 60'000, .quadrature = 4, .level = 1e-6});
       EXPECT_TRUE(r.ok) << "cell " << cell << ": " << r.message;
     }
   }
@@ -126,6 +147,8 @@ TEST_P(LearnedFields, GuideSamplesItsDensity) {
   const Trained t(GetParam());
   const auto places = vertices_of(t, 400);
   ASSERT_GT(places.size(), 100u);
+  kit::ChiOptions options = chi_options;
+  if (GetParam().structure == Structure::grid) options.quadrature = 16;  // its density does not fade to the horizon
   for (size_t k = 0; k < 6; ++k) {
     const Spot& at = places[k * places.size() / 6];
     const Mode mode = at.side == Side::camera ? Mode::radiance : Mode::importance;
@@ -144,7 +167,7 @@ TEST_P(LearnedFields, GuideSamplesItsDensity) {
           return s.wi;
         },
         // A lobe that samples below the horizon there gives nothing: draws and densities are compared above alone.
-        [&](const Vec3& w) { return double(evaluate(g, w, mode).pdf); }, chi_options);
+        [&](const Vec3& w) { return double(evaluate(g, w, mode).pdf); }, options);
     EXPECT_TRUE(r.p > chi_options.level) << (at.side == Side::camera ? "camera: " : "light: ") << r.message;
     EXPECT_NEAR(r.mass, r.drawn, 0.02) << r.message;
     EXPECT_LT(off, 60 + smooth / 200) << "of " << smooth << ": evaluate and sample disagree";

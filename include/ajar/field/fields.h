@@ -49,6 +49,10 @@ enum class Rule : uint8_t {
   returned   ///< what the path itself brought back from there
 };
 
+/// As the user writes them.
+inline constexpr const char* structure_names[] = {"adaptive", "grid", "probes"};
+inline constexpr const char* rule_names[] = {"expected", "max", "return"};
+
 struct Fields {
   Structure structure = Structure::adaptive;
   Rule rule = Rule::expected;

@@ -31,6 +31,8 @@ void go_on_from(StoredFields stored, const LearnOptions& options, Learning& lear
 StoredFields stored_fields(const Scene& scene, const Learning& learning, const Film& film);
 /// Passes that were traced and dropped.
 inline uint32_t dropped_passes(const Learning& learning, const Film& film) { return film.dropped - learning.first; }
+/// Whether passes only train the fields so far (LearnOptions::train): they do not count.
+bool in_training(const Learning& learning);
 /// Whether the subpaths of this pixel are recorded in this pass.
 bool is_recorded(const Learning& learning, uint64_t pixel, uint32_t pass);
 /// Call after every finished pass. Drops the young passes from the film when the time has come.

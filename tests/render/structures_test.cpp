@@ -1,0 +1,122 @@
+// Every structure, rule and way of training leaves the image right, and learns what the others learn.
+#include <gtest/gtest.h>
+
+#include "kit/stage.h"
+#include "measure.h"
+
+namespace ajar {
+namespace {
+
+using namespace kit;
+
+Scene room() {
+  Scene scene = stage();
+  Material glossy;
+  glossy.kind = MaterialKind::roughplastic;
+  add_sphere(scene, {0.15f, -0.35f, 0.1f}, 0.45f, add_material(scene, glossy));
+  finish(scene);
+  return scene;
+}
+
+struct Way {
+  const char* name;
+  const char* integrator;
+  void (*set)(RenderOptions&);
+};
+void PrintTo(const Way& w, std::ostream* out) { *out << w.name; }
+
+const Way ways[] = {
+    {"grid", "guided-bdpt", [](RenderOptions& o) { o.learn.structure = Structure::grid; }},
+    {"probes", "guided-bdpt", [](RenderOptions& o) { o.learn.structure = Structure::probes; }},
+    {"grid_path", "guided-path", [](RenderOptions& o) { o.learn.structure = Structure::grid; }},
+    {"probes_path", "guided-path", [](RenderOptions& o) { o.learn.structure = Structure::probes; }},
+    {"max", "guided-bdpt", [](RenderOptions& o) { o.learn.rule = Rule::max; }},
+    {"returned", "guided-bdpt", [](RenderOptions& o) { o.learn.rule = Rule::returned; }},
+    {"trained", "guided-bdpt", [](RenderOptions& o) { o.learn.train = 6, o.learn.forget = 1; }},
+    {"no_next_event", "path", [](RenderOptions& o) { o.next_event = false; }},
+    {"no_next_event_guided", "guided-path", [](RenderOptions& o) { o.next_event = false; }},
+};
+
+class Ways : public testing::TestWithParam<Way> {};
+
+TEST_P(Ways, LeaveTheImageRight) {
+  const Scene scene = room();
+  RenderOptions o = statistical("bdpt", 6);
+  const Estimate bdpt = measure(scene, o, {.batches = 16, .passes = 24, .seed = 1000});
+  o.integrator = GetParam().integrator;
+  GetParam().set(o);
+  o.learn.trust = 8;  // few paths guide as many will
+  expect_same(measure(scene, o, {.batches = 16, .passes = o.next_event ? 24u : 60u, .seed = 2000}), bdpt,
+              GetParam().name);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Ways, testing::ValuesIn(ways),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+// Irradiance (or importance) that camera (light) vertices see on average, as the cells know it. Cells of one size.
+double mean_total(const Fields& fields, Side side) {
+  double sum = 0, weights = 0;
+  for (const FieldCell& cell : fields.of(side).cells) sum += double(cell.visits * cell.total), weights += cell.visits;
+  return sum / weights;
+}
+
+Fields learned(const Scene& scene, Structure structure, Rule rule) {
+  RenderOptions o = statistical("guided-bdpt");
+  o.spp = 32, o.learn.structure = structure, o.learn.rule = rule;
+  return rendered(scene, Accel(scene), o).learning.fields;
+}
+
+TEST(Structures, LearnTheSame) {
+  const Scene scene = room();
+  const Fields grid = learned(scene, Structure::grid, Rule::expected),
+               probes = learned(scene, Structure::probes, Rule::expected),
+               returned = learned(scene, Structure::grid, Rule::returned),
+               max = learned(scene, Structure::grid, Rule::max);
+  for (const Side side : {Side::camera, Side::light}) {
+    const double truth = mean_total(grid, side);
+    EXPECT_NEAR(mean_total(probes, side), truth, 0.1 * truth);
+    // A light path's return sees the lens from its own vertices alone, the other rules from camera vertices too.
+    EXPECT_NEAR(mean_total(returned, side), truth, 0.2 * truth);
+    EXPECT_GT(mean_total(max, side), 1.5 * truth) << "max exaggerates";
+  }
+}
+
+bool same(const RenderState& a, const RenderState& b) {
+  return a.film.camera_sum == b.film.camera_sum && a.film.splat_sum == b.film.splat_sum &&
+         a.learning.fields.q.mean == b.learning.fields.q.mean && a.learning.fields.w.mean == b.learning.fields.w.mean;
+}
+
+TEST(Structures, ThreadsDoNotMatter) {
+  const Scene scene = room();
+  const Accel accel(scene);
+  for (const Structure structure : {Structure::grid, Structure::probes})
+    for (const Rule rule : {Rule::expected, Rule::returned}) {
+      RenderOptions o = statistical("guided-bdpt");
+      o.spp = 2, o.learn.structure = structure, o.learn.rule = rule, o.threads = 1;
+      const RenderState one = rendered(scene, accel, o);
+      o.threads = 3;
+      EXPECT_TRUE(same(one, rendered(scene, accel, o))) << structure_names[size_t(structure)];
+      ++o.seed;
+      EXPECT_FALSE(same(one, rendered(scene, accel, o)));
+    }
+}
+
+TEST(Train, FreezesTheFields) {
+  const Scene scene = room();
+  const Accel accel(scene);
+  RenderOptions o = statistical("guided-path");
+  o.learn.train = 4, o.spp = 2;
+  const RenderState first = rendered(scene, accel, o);
+  o.spp = 20;
+  const RenderState later = rendered(scene, accel, o);
+  EXPECT_EQ(later.learning.fields.generation, 4u);
+  EXPECT_EQ(later.film.dropped, 4u);
+  EXPECT_EQ(later.film.passes, 20u);
+  EXPECT_EQ(first.film.passes, 2u) << "after the training";
+  EXPECT_EQ(first.learning.fields.q.mean, later.learning.fields.q.mean);
+  o.learn.train = 0;
+  EXPECT_GT(rendered(scene, accel, o).learning.fields.generation, young_generations);
+}
+
+}  // namespace
+}  // namespace ajar
