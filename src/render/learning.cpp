@@ -18,7 +18,7 @@ uint32_t interval(const Learning& l) {
 
 Learning start_learning(const Scene& scene, const Film& film, const LearnOptions& options) {
   Learning l;
-  l.train = options.train;
+  l.train = options.train + options.train % 2;  // passes are dropped in pairs
   l.fields = start_fields(scene, double(film.pixels()), options);
   return l;
 }

@@ -18,6 +18,8 @@ namespace fs = std::filesystem;
 constexpr double longest = 1e7;  // seconds
 
 const std::vector<std::string> heuristics = {"power", "balance"}, samplers = {"sobol", "independent"};
+const std::vector<std::string> structures(std::begin(structure_names), std::end(structure_names)),
+    rules(std::begin(rule_names), std::end(rule_names)), rates = {"recent", "visits"};
 const std::vector<std::string> guided = {"both", "camera", "light"};  // in the order of the enumerators
 
 /// An option of a method: how a suite sets it, how a report shows it. A new option is a line in the table.
@@ -47,6 +49,15 @@ const Option options_table[] = {
     {"field_memory",
      [](RenderOptions& o, const Element& e) { o.learn.memory = size_t(integer(e, 64 << 10, int64_t(64) << 30)); },
      [](const RenderOptions& o) { return Json(o.learn.memory); }},
+    {"field_structure",
+     [](RenderOptions& o, const Element& e) { o.learn.structure = Structure(choice(e, structures)); },
+     [](const RenderOptions& o) { return Json(structures[size_t(o.learn.structure)]); }},
+    {"field_rule", [](RenderOptions& o, const Element& e) { o.learn.rule = Rule(choice(e, rules)); },
+     [](const RenderOptions& o) { return Json(rules[size_t(o.learn.rule)]); }},
+    {"field_rate", [](RenderOptions& o, const Element& e) { o.learn.forget = choice(e, rates) == 1 ? 1 : 0.5f; },
+     [](const RenderOptions& o) { return Json(rates[o.learn.forget == 1]); }},
+    {"train", [](RenderOptions& o, const Element& e) { o.learn.train = uint32_t(integer(e, 0, 1 << 20)); },
+     [](const RenderOptions& o) { return Json(o.learn.train); }},
 };
 
 const std::vector<std::string> budget_keys = {"cpu_seconds", "seconds", "spp"};

@@ -109,6 +109,23 @@ TEST_F(FieldsUsed, GuideAndMemoryAreObeyed) {
   EXPECT_LT(small["fields"]["cells"], both["fields"]["cells"]);
 }
 
+TEST_F(FieldsUsed, StructuresAndTrainingAreRecorded) {
+  const auto json = render({"--spp", "3", "--train", "4", "--field-structure", "probes", "--field-rule", "max",
+                            "--field-rate", "visits", "--save-fields", fields});
+  EXPECT_EQ(json["spp"], 3) << "after the training";
+  EXPECT_EQ(json["options"]["field_structure"], "probes");
+  EXPECT_EQ(json["options"]["field_rule"], "max");
+  EXPECT_EQ(json["options"]["field_rate"], "visits");
+  EXPECT_EQ(json["options"]["train"], 4);
+  EXPECT_EQ(json["fields"]["structure"], "probes");
+  EXPECT_EQ(json["fields"]["generation"], 4);
+  EXPECT_EQ(json["fields"]["dropped_passes"], 4);
+  const auto again = render({"--spp", "3", "--train", "4", "--load-fields", fields});
+  EXPECT_EQ(again["fields"]["structure"], "probes") << "the file's";
+  EXPECT_EQ(again["fields"]["generation"], 4) << "trained";
+  EXPECT_NE(told({}).find("probes"), std::string::npos);
+}
+
 // What a render started from is its own affair: the file of fields is not needed again.
 TEST_F(FieldsUsed, ResumeIsTheStraightRun) {
   render({"--spp", "9", "--save-fields", fields});
@@ -143,6 +160,14 @@ TEST_F(FieldsUsed, WhatMakesNoSenseIsAnError) {
       {{"--field-memory", "8M"}, "bdpt", "--field-memory: the integrator bdpt learns no fields"},
       {{"--guide", "neither"}, "guided-bdpt", "--guide: neither not in"},
       {{"--guide", "light"}, "guided-path", "--guide light: guided-path has no light subpaths"},
+      {{"--field-structure", "grid"}, "bdpt", "--field-structure: the integrator bdpt learns no fields"},
+      {{"--field-structure", "octree"}, "guided-bdpt", "--field-structure: octree not in"},
+      {{"--field-rule", "mean"}, "guided-bdpt", "--field-rule: mean not in"},
+      {{"--field-rate", "fast"}, "guided-bdpt", "--field-rate: fast not in"},
+      {{"--train", "3"}, "guided-bdpt", "--train 3: passes come in pairs"},
+      {{"--train", "4"}, "path", "--train: the integrator path learns no fields"},
+      {{"--no-next-event"}, "guided-bdpt", "--no-next-event: guided-bdpt needs it"},
+      {{"--load-fields", fields, "--field-structure", "grid"}, "guided-bdpt", "stored fields bring their structure"},
       {{"--load-fields", none_such}, "guided-bdpt", none_such + ": no such file of fields"},
       {{"--load-fields", box}, "guided-bdpt", box + ": not a file of fields of this version"},
       {{"--load-fields", fields, "--resume", state}, "guided-bdpt", "leave out either this or --resume"},

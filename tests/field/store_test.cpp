@@ -23,10 +23,10 @@ Scene room() {
 }
 
 // Learned from made-up records: a narrow light, so that cells and strata divide.
-Fields learned(const Scene& scene, int generations) {
-  Fields fields = start_fields(scene, 64);
+Fields learned(const Scene& scene, int generations, Structure structure = Structure::adaptive) {
   LearnOptions options;
-  options.divide_cell = 40;
+  options.divide_cell = 40, options.structure = structure, options.rule = Rule::returned;
+  Fields fields = start_fields(scene, 64, options);
   for (int g = 0; g < generations; ++g) {
     Training training = start_training(fields);
     Sightings sightings;
@@ -71,8 +71,10 @@ struct Store : testing::Test {
   }
 };
 
-TEST_F(Store, FieldsComeBack) {
-  const Fields a = learned(scene, 5);
+struct StoredStructures : Store, testing::WithParamInterface<Structure> {};
+
+TEST_P(StoredStructures, FieldsComeBack) {
+  const Fields a = learned(scene, 5, GetParam());
   ASSERT_GT(a.cells.size(), 40u);
   ASSERT_GT(a.q.nodes.size(), a.cells.size() + 20) << "divided strata are among them";
   save_fields(path, {a, key, 21});
@@ -81,6 +83,8 @@ TEST_F(Store, FieldsComeBack) {
   EXPECT_EQ(stored.passes, 21u);
   EXPECT_EQ(stored.scene, key);
   EXPECT_EQ(a.generation, b.generation);
+  EXPECT_EQ(b.structure, GetParam());
+  EXPECT_EQ(b.rule, Rule::returned);
   EXPECT_EQ(bytes(a), bytes(b));
   Sampler sampler = make_sampler(SamplerKind::independent, 1, Side::camera, 0, 0);
   int divided = 0;
@@ -101,8 +105,14 @@ TEST_F(Store, FieldsComeBack) {
       EXPECT_EQ(pdf_a, pdf_b);
     }
   }
-  EXPECT_GT(divided, 100);
+  if (GetParam() == Structure::adaptive) {
+    EXPECT_GT(divided, 100);
+  }
 }
+
+INSTANTIATE_TEST_SUITE_P(All, StoredStructures,
+                         testing::Values(Structure::adaptive, Structure::grid, Structure::probes),
+                         [](const auto& test) { return std::string(structure_names[size_t(test.param)]); });
 
 TEST_F(Store, SameFieldsSameBytes) {
   const auto contents = [&] {
@@ -202,6 +212,37 @@ TEST_F(Store, WhatCannotBeIsAnError) {
   for (const Case& c : cases) {
     Fields bad = good;
     c.change(bad, last, parent);
+    EXPECT_EQ(error_of(bad), path + ": file of fields is damaged; learn the fields again with --save-fields") << c.name;
+  }
+}
+
+TEST_F(Store, PatchesThatCannotBeAreAnError) {
+  const Fields good = learned(scene, 4, Structure::probes);
+  ASSERT_GT(good.cells.size(), 2u);
+  EXPECT_EQ(error_of(good), "");
+  struct Case {
+    const char* name;
+    void (*change)(Fields&, StrataNode& root);
+  };
+  const Case cases[] = {
+      {"structure of another's nodes", [](Fields& f, StrataNode&) { f.structure = Structure::adaptive; }},
+      {"structure of no name", [](Fields& f, StrataNode&) { f.structure = Structure(7); }},
+      {"rule of no name", [](Fields& f, StrataNode&) { f.rule = Rule(3); }},
+      {"a zone less", [](Fields&, StrataNode& root) { root.divided &= uint16_t(0x7fff); }},
+      {"a share in an empty place", [](Fields&, StrataNode& root) { root.before[3] = 1; }},
+      {"a zone without a share", [](Fields&, StrataNode& root) { root.before[12] = root.before[11]; }},
+      {"a segment without a share",
+       [](Fields& f, StrataNode& root) {
+         StrataNode& zone = f.q.nodes[root.child(15)];
+         zone.before[9] = zone.before[8];
+       }},
+      {"a divided segment", [](Fields& f, StrataNode& root) { f.q.nodes[root.child(15)].divided = 1; }},
+      {"a probe nowhere", [](Fields& f, StrataNode&) { f.table.probes[5].p.x = std::nanf(""); }},
+      {"an axis that is none", [](Fields& f, StrataNode&) { f.table.probes[5].axis = 3; }},
+  };
+  for (const Case& c : cases) {
+    Fields bad = good;
+    c.change(bad, bad.q.nodes[bad.q.cells[0].root]);
     EXPECT_EQ(error_of(bad), path + ": file of fields is damaged; learn the fields again with --save-fields") << c.name;
   }
 }

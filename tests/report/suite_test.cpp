@@ -37,7 +37,8 @@ struct SuiteFile : testing::Test {
     return Json::parse(R"({
       "title": "t", "seeds": 3, "budget": {"cpu_seconds": 2.5}, "baseline": "b", "techniques": true,
       "methods": [{"name": "p", "integrator": "path", "roulette_depth": 3,
-                   "guide": "light", "field_memory": 1048576},
+                   "guide": "light", "field_memory": 1048576, "field_structure": "probes",
+                   "field_rule": "return", "field_rate": "visits", "train": 4},
                   {"name": "b", "integrator": "bdpt", "heuristic": "balance", "sampler": "independent"}],
       "scenes": [
         {"name": "one", "file": "a.xml", "defines": {"door": 5, "x": "y"}, "size": [32, 16], "max_depth": 7,
@@ -89,6 +90,10 @@ TEST_F(SuiteFile, IsReadInFull) {
   EXPECT_EQ(s.methods[0].options.integrator, "path");
   EXPECT_EQ(s.methods[0].options.roulette_depth, 3);
   EXPECT_EQ(s.methods[0].options.learn.guided, Guided::light);
+  EXPECT_EQ(s.methods[0].options.learn.structure, Structure::probes);
+  EXPECT_EQ(s.methods[0].options.learn.rule, Rule::returned);
+  EXPECT_EQ(s.methods[0].options.learn.forget, 1);
+  EXPECT_EQ(s.methods[0].options.learn.train, 4u);
   EXPECT_EQ(s.methods[0].options.learn.memory, size_t(1) << 20);
   EXPECT_EQ(s.methods[1].options.heuristic, Heuristic::balance);
   EXPECT_EQ(s.methods[1].options.sampler, SamplerKind::independent);
@@ -163,6 +168,8 @@ TEST_F(SuiteFile, WrongTypesAndValues) {
   expect_error("/methods/1/sampler", "halton", "known are sobol, independent");
   expect_error("/methods/0/roulette_depth", 0, "roulette_depth: is 0");
   expect_error("/methods/0/guide", "none", "guide");
+  expect_error("/methods/0/field_structure", "octree", "field_structure");
+  expect_error("/methods/0/field_rule", "mean", "field_rule");
   expect_error("/methods/0/field_memory", 100, "field_memory: is 100");
   expect_error("/methods/1/name", "p", "methods \"p\".name: another has this name");
   expect_error("/methods/1/name", "../p", "names become file names");
@@ -200,7 +207,7 @@ TEST(SuiteOptions, ThoseThatDifferFromTheirDefaults) {
   EXPECT_EQ(options_json(options, false).dump(), R"({"integrator":"path"})");
   options.sampler = SamplerKind::independent;
   EXPECT_EQ(options_json(options, false).dump(), R"({"integrator":"path","sampler":"independent"})");
-  EXPECT_EQ(options_json(options).size(), 6u);
+  EXPECT_EQ(options_json(options).size(), 10u);
 }
 
 }  // namespace
