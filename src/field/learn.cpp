@@ -292,10 +292,6 @@ void add_cells(Fields& fields, const Sightings& sightings, const LearnOptions& o
   }
 }
 
-}  // namespace
-
-namespace {
-
 // Cells of patches that the memory has room for, with their places in the hash table.
 double affordable_cells(size_t memory) {
   constexpr double strata = (1 + zones) * (sizeof(StrataNode) + 32 * sizeof(float));
