@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "ajar/core/error.h"
+#include "ajar/report/account.h"
 #include "ajar/report/metrics.h"
 #include "arguments.h"
 #include "commands.h"
@@ -125,6 +126,8 @@ struct Log {
         {"seconds", state.stats.seconds}, {"cpu_seconds", state.stats.cpu_seconds}, {"spp", state.film.passes}};
     if (const double error = estimated_error(state.film); error < infinity) j["estimated_relmse"] = error;
     if (reference) j["error"] = nlohmann::ordered_json::parse(to_json(compare(develop(state.film), *reference)));
+    j["phases_cpu"] = phases_json(state.stats.cpu_seconds, state.stats.learn_cpu_seconds, state.stats.ledger);
+    add_account(j, state);
     file << j.dump() << std::endl;
   }
 };

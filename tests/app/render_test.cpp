@@ -69,6 +69,37 @@ TEST_F(Render, NoiseStopsAndIsRecorded) {
   EXPECT_EQ(nlohmann::json::parse(last)["estimated_relmse"], json["estimated_relmse"]);
 }
 
+// The account of the image and of the last line of its log are one and the same.
+TEST_F(Render, AccountIsRecorded) {
+  const auto json = run({"--spp", "64", "--log", log});
+  std::ifstream lines(log);
+  std::string line, last;
+  while (std::getline(lines, line)) last = line;
+  const auto logged = nlohmann::json::parse(last);
+  for (const char* key : {"mean_path_edges", "zero_contribution_paths", "tracing", "strategies"})
+    EXPECT_EQ(json[key], logged[key]) << key;
+  EXPECT_FALSE(json.contains("fields"));
+  EXPECT_GT(json["mean_path_edges"]["camera"], 1);
+  EXPECT_EQ(json["mean_path_edges"]["light"], 0);
+  double energy = 0, time = 0;
+  for (const auto& row : json["strategies"]) {
+    energy += row["energy"].get<double>(), time += row["time"].get<double>();
+    EXPECT_LE(row["s"], 1);
+    EXPECT_LE(row["s"].get<int>() + row["t"].get<int>(), 5) << "of at most 4 edges";
+  }
+  EXPECT_NEAR(energy, 1, 1e-9);
+  const auto& tracing = json["tracing"];
+  EXPECT_NEAR(time, tracing["joins"].get<double>(), 1e-9);
+  double all = 0;
+  for (const auto& [part, share] : tracing.items()) all += share.get<double>();
+  EXPECT_NEAR(all, 1, 1e-9);
+  EXPECT_GT(tracing["camera"], 0.01);
+  EXPECT_EQ(tracing["light"], 0);
+  EXPECT_GT(tracing["joins"], 0.01);
+  EXPECT_EQ(json["cpu_seconds"]["learn"], 0);
+  EXPECT_EQ(logged["phases_cpu"]["rebuild"], 0);
+}
+
 TEST_F(Render, NoiseOutOfReachEndsAtTheLimit) {
   const auto counted = run({"--noise", "1e-12", "--spp", "3"});
   EXPECT_EQ(counted["spp"], 3);
