@@ -174,7 +174,8 @@ void trace_bdpt(const Job& job, Sample& sample, Scratch& scratch) {
     join_all(work, surface);
   } while (camera.n <= job.walk.max_edges && scatter(job.walk, sample.sampler, camera, walk));
   charge(scratch, scratch.ledger->camera_ticks);
-  if (sample.teaches) teach(work);
+  if (!sample.teaches) return;
+  teach(work);
   charge(scratch, scratch.ledger->learn_ticks);
 }
 
