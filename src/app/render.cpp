@@ -25,7 +25,7 @@ namespace {
 struct Arguments {
   std::string scene, out, size, time, cpu_time, heuristic = "power", sampler = "sobol", log, reference, checkpoint,
                                                 resume, techniques, integrator, save_fields, load_fields,
-                                                guide = "both", field_memory;
+                                                guide = "both", field_memory, versus;
   std::optional<std::string> noise;
   std::vector<std::string> defines, features;
   int spp = 0, max_depth = std::numeric_limits<int>::min(), threads = 0, roulette_depth = 5;
@@ -110,6 +110,7 @@ RenderOptions render_options(const Arguments& a, Scene& scene) {
   o.sampler = a.sampler == "independent" ? SamplerKind::independent : SamplerKind::sobol;
   o.techniques = !a.techniques.empty();
   o.learn = learn_options(a, o.integrator);
+  if (!a.versus.empty()) check_versus(a.versus, o.integrator);
   return o;
 }
 
@@ -175,6 +176,10 @@ Picture with_features(const Arguments& a, const Scene& scene, const Accel& accel
   return out;
 }
 
+void write_record(const Arguments& a, const Run& run, const RenderState& state) {
+  write_text(std::filesystem::path(a.out).replace_extension(".json").string(), summary(run, state).dump(2) + "\n");
+}
+
 void write_outputs(const Arguments& a, const Scene& scene, const Accel& accel, Run& run, const RenderState& state) {
   const double wall = wall_seconds(), cpu = process_cpu_seconds();
   const std::filesystem::path out(a.out);
@@ -185,10 +190,17 @@ void write_outputs(const Arguments& a, const Scene& scene, const Accel& accel, R
   if (!a.techniques.empty()) write_pyramid(state.pyramid, state.film, a.techniques);
   run.write_seconds = wall_seconds() - wall;
   run.write_cpu = process_cpu_seconds() - cpu;
-  write_text(std::filesystem::path(out).replace_extension(".json").string(), summary(run, state).dump(2) + "\n");
+  write_record(a, run, state);
   if (a.quiet) return;
   fmt::print("{}\n", a.out);
   if (!only_png && a.png) fmt::print("{}\n", png);
+}
+
+// The image is safe by now; the record is written again.
+void hold_against(const Arguments& a, const Scene& scene, const Accel& accel, Run& run, const RenderState& state) {
+  run.versus = run_versus(scene, accel, run.options, a.versus, state, [](const RenderState&) { return !stop_asked(); });
+  write_record(a, run, state);
+  if (!a.quiet) fmt::print("{}\n", describe(run.versus, state));
 }
 
 void warn(const RenderState& state) {
@@ -227,11 +239,13 @@ void run_render(Arguments a) {
   Progress progress = make_progress(a.quiet);
   double saved = state.stats.seconds;
   catch_stop();
-  RenderOptions options = run.options;  // the user's time begins after loading: building counts
+  RenderOptions budget = run.options;
+  if (!a.versus.empty()) budget.seconds *= 1 - versus_share, budget.cpu_seconds *= 1 - versus_share;
+  RenderOptions options = budget;  // the user's time begins after loading: building counts
   if (options.seconds > 0) options.seconds = std::max(options.seconds - run.build_seconds, 1e-3);
   if (options.cpu_seconds > 0) options.cpu_seconds = std::max(options.cpu_seconds - run.build_cpu, 1e-3);
   render(scene, accel, options, state, [&](const RenderState& s) {
-    show(progress, run.options, s);
+    show(progress, budget, s);
     log.write(s, false);
     if (!a.checkpoint.empty() && s.stats.seconds - saved > 60) {
       saved = s.stats.seconds;
@@ -240,12 +254,13 @@ void run_render(Arguments a) {
     return !stop_asked();
   });
   run.interrupted = stop_asked();
-  finish(progress, run.options, state);
+  finish(progress, budget, state);
   log.write(state, true);
   if (run.interrupted && !a.quiet) fmt::print(stderr, "ajar: interrupted; writing what is there\n");
   if (!a.checkpoint.empty()) save_checkpoint(a.checkpoint, key, state);
   if (!a.save_fields.empty()) save_fields(a.save_fields, stored_fields(scene, state.learning, state.film));
   write_outputs(a, scene, accel, run, state);
+  if (!a.versus.empty() && !run.interrupted) hold_against(a, scene, accel, run, state);
   warn(state);
 }
 
@@ -288,6 +303,8 @@ void add_render(CLI::App& app) {
   c->add_option("--field-memory", a->field_memory, "memory that learned fields may take: 512K, 8M (default), 1G");
   c->add_option("--save-fields", a->save_fields, "file to save the learned fields to");
   c->add_option("--load-fields", a->load_fields, "fields to start from, saved from a render of the same scene");
+  c->add_option("--versus", a->versus,
+                "path, bdpt or light: gets the last tenth of the time, to tell how much error it would have left");
   c->add_flag("--half", a->half, "16-bit floats in the EXR");
   c->add_flag("--lenient", a->lenient, "leave out what the loader does not know, with a note");
   c->add_flag("-q,--quiet", a->quiet, "no progress, no notes");

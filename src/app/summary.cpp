@@ -90,6 +90,7 @@ nlohmann::ordered_json summary(const Run& run, const RenderState& state) {
   }
   if (run.options.noise > 0)
     j["noise"] = {{"target", run.options.noise}, {"reached", error.relmse <= run.options.noise}};
+  if (!run.versus.integrator.empty()) j["versus"] = to_json(run.versus, state);
   add_account(j, state);
   return j;
 }

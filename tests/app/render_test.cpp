@@ -100,6 +100,53 @@ TEST_F(Render, AccountIsRecorded) {
   EXPECT_EQ(logged["phases_cpu"]["rebuild"], 0);
 }
 
+// The other integrator gets a ninth of the time; what is expected of it scales with the time.
+TEST_F(Render, VersusTellsWhatAnotherLeaves) {
+  EXPECT_FALSE(run({"--spp", "1"}).contains("versus"));
+  const auto json = run({"--cpu-time", "0.6s", "--versus", "bdpt"});
+  const auto& v = json["versus"];
+  EXPECT_EQ(v["integrator"], "bdpt");
+  const double spent = json["cpu_seconds"]["trace"], other = v["cpu_seconds"];
+  EXPECT_GE(spent, 0.5);
+  EXPECT_GE(other, spent / 9);
+  EXPECT_LT(spent + other, 0.9) << "both together take the budget, and a batch";
+  EXPECT_GE(v["spp"].get<double>(), 2);
+  const double found = v["estimated_relmse_trimmed"], expected = v["expected_relmse_trimmed"];
+  EXPECT_NEAR(expected, found * other / spent, 1e-9 * found);
+  EXPECT_NEAR(v["error_ratio"].get<double>(), expected / json["estimated_relmse_trimmed"].get<double>(), 1e-9 * found);
+}
+
+// The comparison costs the image nothing but time, and is no part of it.
+TEST_F(Render, VersusLeavesTheImageAlone) {
+  run({"--spp", "9"});
+  std::ifstream first(out, std::ios::binary);
+  const std::string plain{std::istreambuf_iterator<char>(first), {}};
+  const auto json = run({"--spp", "9", "--versus", "light"});
+  EXPECT_EQ(json["spp"], 9);
+  std::ifstream second(out, std::ios::binary);
+  const std::string held{std::istreambuf_iterator<char>(second), {}};
+  const auto pixels = [](const std::string& exr) { return exr.substr(exr.size() / 2); };  // times stand in the header
+  EXPECT_EQ(pixels(plain), pixels(held));
+}
+
+// A single pass has no second half to compare with: that is said, not made up.
+TEST_F(Render, VersusMayHaveTooLittleTime) {
+  const auto json = run({"--spp", "1", "--versus", "bdpt"});
+  EXPECT_TRUE(json["versus"]["error_ratio"].is_null());
+}
+
+TEST_F(Render, WhatCannotBeHeldAgainstIsAnError) {
+  for (const char* other : {"path", "guided-bdpt", "metropolis", ""}) {
+    try {
+      run({"--spp", "1", "--versus", other});
+      EXPECT_EQ(std::string(other), "") << "is no error";  // as if it were not given
+    } catch (const Error& error) {
+      EXPECT_EQ(std::string(error.what()).find("--versus " + std::string(other) + ": cannot be held against path"), 0u)
+          << error.what();
+    }
+  }
+}
+
 TEST_F(Render, NoiseOutOfReachEndsAtTheLimit) {
   const auto counted = run({"--noise", "1e-12", "--spp", "3"});
   EXPECT_EQ(counted["spp"], 3);
