@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "ajar/core/error.h"
+#include "ajar/report/account.h"
 #include "ajar/report/metrics.h"
 #include "arguments.h"
 #include "commands.h"
@@ -23,9 +24,9 @@ namespace ajar {
 namespace {
 
 struct Arguments {
-  std::string scene, out, size, time, cpu_time, heuristic = "power", sampler = "sobol", log, reference, checkpoint,
-                                                resume, techniques, integrator, save_fields, load_fields,
-                                                guide = "both", field_memory, field_structure, field_rule, field_rate;
+  std::string scene, out, size, time, cpu_time,
+      heuristic = "power", sampler = "sobol", log, reference, checkpoint, resume, techniques, integrator, save_fields,
+      load_fields, guide = "both", field_memory, field_structure, field_rule, field_rate, versus;
   std::optional<std::string> noise;
   std::vector<std::string> defines, features;
   int spp = 0, max_depth = std::numeric_limits<int>::min(), threads = 0, roulette_depth = 5;
@@ -142,6 +143,7 @@ RenderOptions render_options(const Arguments& a, Scene& scene) {
   o.next_event = !a.no_next_event;
   check_next_event(o, scene);
   o.learn = learn_options(a, o.integrator);
+  if (!a.versus.empty()) check_versus(a.versus, o.integrator);
   return o;
 }
 
@@ -158,6 +160,8 @@ struct Log {
         {"seconds", state.stats.seconds}, {"cpu_seconds", state.stats.cpu_seconds}, {"spp", state.film.passes}};
     if (const double error = estimated_error(state.film); error < infinity) j["estimated_relmse"] = error;
     if (reference) j["error"] = nlohmann::ordered_json::parse(to_json(compare(develop(state.film), *reference)));
+    j["phases_cpu"] = phases_json(state.stats.cpu_seconds, state.stats.learn_cpu_seconds, state.stats.ledger);
+    add_account(j, state);
     file << j.dump() << std::endl;
   }
 };
@@ -205,6 +209,10 @@ Picture with_features(const Arguments& a, const Scene& scene, const Accel& accel
   return out;
 }
 
+void write_record(const Arguments& a, const Run& run, const RenderState& state) {
+  write_text(std::filesystem::path(a.out).replace_extension(".json").string(), summary(run, state).dump(2) + "\n");
+}
+
 void write_outputs(const Arguments& a, const Scene& scene, const Accel& accel, Run& run, const RenderState& state) {
   const double wall = wall_seconds(), cpu = process_cpu_seconds();
   const std::filesystem::path out(a.out);
@@ -215,10 +223,17 @@ void write_outputs(const Arguments& a, const Scene& scene, const Accel& accel, R
   if (!a.techniques.empty()) write_pyramid(state.pyramid, state.film, a.techniques);
   run.write_seconds = wall_seconds() - wall;
   run.write_cpu = process_cpu_seconds() - cpu;
-  write_text(std::filesystem::path(out).replace_extension(".json").string(), summary(run, state).dump(2) + "\n");
+  write_record(a, run, state);
   if (a.quiet) return;
   fmt::print("{}\n", a.out);
   if (!only_png && a.png) fmt::print("{}\n", png);
+}
+
+// The image is safe by now; the record is written again.
+void hold_against(const Arguments& a, const Scene& scene, const Accel& accel, Run& run, const RenderState& state) {
+  run.versus = run_versus(scene, accel, run.options, a.versus, state, [](const RenderState&) { return !stop_asked(); });
+  write_record(a, run, state);
+  if (!a.quiet) fmt::print("{}\n", describe(run.versus, state));
 }
 
 void warn(const RenderState& state) {
@@ -257,11 +272,13 @@ void run_render(Arguments a) {
   Progress progress = make_progress(a.quiet);
   double saved = state.stats.seconds;
   catch_stop();
-  RenderOptions options = run.options;  // the user's time begins after loading: building counts
+  RenderOptions budget = run.options;
+  if (!a.versus.empty()) budget.seconds *= 1 - versus_share, budget.cpu_seconds *= 1 - versus_share;
+  RenderOptions options = budget;  // the user's time begins after loading: building counts
   if (options.seconds > 0) options.seconds = std::max(options.seconds - run.build_seconds, 1e-3);
   if (options.cpu_seconds > 0) options.cpu_seconds = std::max(options.cpu_seconds - run.build_cpu, 1e-3);
   render(scene, accel, options, state, [&](const RenderState& s) {
-    show(progress, run.options, s);
+    show(progress, budget, s);
     log.write(s, false);
     if (!a.checkpoint.empty() && s.stats.seconds - saved > 60) {
       saved = s.stats.seconds;
@@ -270,12 +287,13 @@ void run_render(Arguments a) {
     return !stop_asked();
   });
   run.interrupted = stop_asked();
-  finish(progress, run.options, state);
+  finish(progress, budget, state);
   log.write(state, true);
   if (run.interrupted && !a.quiet) fmt::print(stderr, "ajar: interrupted; writing what is there\n");
   if (!a.checkpoint.empty()) save_checkpoint(a.checkpoint, key, state);
   if (!a.save_fields.empty()) save_fields(a.save_fields, stored_fields(scene, state.learning, state.film));
   write_outputs(a, scene, accel, run, state);
+  if (!a.versus.empty() && !run.interrupted) hold_against(a, scene, accel, run, state);
   warn(state);
 }
 
@@ -329,6 +347,8 @@ void add_render(CLI::App& app) {
   c->add_flag("--no-next-event", a->no_next_event, "lights are found by hitting them alone: path and guided-path");
   c->add_option("--save-fields", a->save_fields, "file to save the learned fields to");
   c->add_option("--load-fields", a->load_fields, "fields to start from, saved from a render of the same scene");
+  c->add_option("--versus", a->versus,
+                "path, bdpt or light: gets the last tenth of the time, to tell how much error it would have left");
   c->add_flag("--half", a->half, "16-bit floats in the EXR");
   c->add_flag("--lenient", a->lenient, "leave out what the loader does not know, with a note");
   c->add_flag("-q,--quiet", a->quiet, "no progress, no notes");

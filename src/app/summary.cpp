@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "ajar/report/account.h"
 #include "version.h"
 
 namespace ajar {
@@ -53,14 +54,12 @@ nlohmann::ordered_json options_json(const Run& run, const Film& film) {
   return j;
 }
 
-nlohmann::ordered_json fields_json(const Learning& learning, const Film& film) {
-  const Fields& f = learning.fields;
-  return {{"structure", structure_names[size_t(f.structure)]},
-          {"bytes", bytes(f)},
-          {"cells", f.cells.size()},
-          {"nodes", {{"q", f.q.nodes.size()}, {"w", f.w.nodes.size()}}},
-          {"generation", f.generation},
-          {"dropped_passes", dropped_passes(learning, film)}};
+// Loading, building and writing around the render's own phases.
+nlohmann::ordered_json phases_of(double load, double build, nlohmann::ordered_json render, double write) {
+  nlohmann::ordered_json j = {{"load", load}, {"build", build}};
+  j.update(render);
+  j["write"] = write;
+  return j;
 }
 
 }  // namespace
@@ -77,35 +76,27 @@ nlohmann::ordered_json summary(const Run& run, const RenderState& state) {
   j["spp"] = state.film.passes + double(state.film.chunks) / chunk_count(state.film);
   j["interrupted"] = run.interrupted;
   const RenderStats& stats = state.stats;
-  j["seconds"] = {{"load", run.load_seconds},
-                  {"build", run.build_seconds},
-                  {"trace", stats.seconds - stats.learn_seconds},
-                  {"learn", stats.learn_seconds},
-                  {"write", run.write_seconds}};
-  j["cpu_seconds"] = {{"load", run.load_cpu},
-                      {"build", run.build_cpu},
-                      {"trace", stats.cpu_seconds - stats.learn_cpu_seconds},
-                      {"learn", stats.learn_cpu_seconds},
-                      {"write", run.write_cpu}};
+  j["seconds"] = phases_of(run.load_seconds, run.build_seconds,
+                           phases_json(stats.seconds, stats.learn_seconds, stats.ledger), run.write_seconds);
+  j["cpu_seconds"] = phases_of(run.load_cpu, run.build_cpu,
+                               phases_json(stats.cpu_seconds, stats.learn_cpu_seconds, stats.ledger), run.write_cpu);
   j["triangles"] = run.triangles;
   j["rays"] = {{"camera", n.camera_rays}, {"light", n.light_rays}, {"shadow", n.shadow_rays}};
   j["rays_per_second"] = per(rays, state.stats.seconds);
   j["rays_per_cpu_second"] = per(rays, state.stats.cpu_seconds);
   j["samples_per_cpu_second"] = per(double(n.camera_paths), state.stats.cpu_seconds);
-  j["mean_path_edges"] = {{"camera", per(double(n.camera_rays), double(n.camera_paths))},
-                          {"light", per(double(n.light_rays), double(n.light_paths))}};
-  j["zero_contribution_paths"] = per(double(n.zero_paths), double(n.camera_paths));
   j["rejected_values"] = state.stats.rejected;
   j["replay_rejected"] = state.stats.replay;
   j["memory_peak_bytes"] = peak_bytes();
   j["accel_bytes"] = run.accel_bytes;
-  if (is_guided(run.options.integrator)) j["fields"] = fields_json(state.learning, state.film);
   if (error.relmse < infinity) {
     j["estimated_relmse"] = error.relmse;
     j["estimated_relmse_trimmed"] = error.relmse_trimmed;
   }
   if (run.options.noise > 0)
     j["noise"] = {{"target", run.options.noise}, {"reached", error.relmse <= run.options.noise}};
+  if (!run.versus.integrator.empty()) j["versus"] = to_json(run.versus, state);
+  add_account(j, state);
   return j;
 }
 

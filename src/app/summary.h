@@ -7,6 +7,7 @@
 
 #include "ajar/film/picture.h"
 #include "ajar/render/render.h"
+#include "versus.h"
 
 namespace ajar {
 
@@ -21,6 +22,7 @@ struct Run {
   uint64_t triangles = 0, accel_bytes = 0;
   int threads = 1;
   bool interrupted = false;
+  Versus versus;
 };
 
 nlohmann::ordered_json summary(const Run& run, const RenderState& state);

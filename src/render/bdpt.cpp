@@ -26,10 +26,13 @@ void add(Work& work, Candidate& c, int s, int t) {
   const float w = weigh(work, c);
   const Rgb weighted = c.value * w;
   if (!accept(weighted, work.sample, work.scratch)) return;
-  if (t == 1)
+  if (t == 1) {
     work.scratch.splats->push_back({c.raster, weighted});
-  else
+    gain_splat(work.job, work.scratch, s, work.scratch.splats->back());
+  } else {
     work.sample.value += weighted;
+    gain(work.scratch, s, t, weighted * work.sample.filter);
+  }
   if (!work.scratch.strategies) return;
   // What the camera sample found gets its filter here; splats are filtered on the film.
   const Vec2 raster = t == 1 ? c.raster : Vec2(work.sample.x, work.sample.y);
@@ -39,6 +42,7 @@ void add(Work& work, Candidate& c, int s, int t) {
 
 bool add_if_visible(Work& work, Candidate& c, int s, int t) {
   ++work.scratch.counters.shadow_rays;
+  ++work.scratch.ledger->at(s, t).rays;
   if (!visible(*work.job.accel, c.segment)) return false;
   add(work, c, s, t);
   return true;
@@ -60,6 +64,7 @@ void teach_direct(const Work& work, Vertex& v, float received) {
   if (guide.side == Side::light) received *= relative_importance(fields, guide);
   v.received = received;
   record_direct(fields.of(guide.side), work.job.training->of(guide.side), guide.cell, received);
+  charge(work.scratch, work.scratch.ledger->learn_ticks);
 }
 
 // The light subpath, and t = 1 at every vertex. The light itself, s = 1, is left to the camera ray that sees it.
@@ -74,13 +79,16 @@ void trace_light_subpath(Work& work) {
   while (light.n < job.walk.max_edges) {
     if (light.n > 1 && !scatter(job.walk, sampler, light, walk)) return;
     ++work.scratch.counters.light_rays;
-    if (!step(*job.scene, *job.accel, job.walk, light, walk, surface)) return;
+    const bool hit = step(*job.scene, *job.accel, job.walk, light, walk, surface);
+    charge(work.scratch, work.scratch.ledger->light_ticks);
+    if (!hit) return;
     work.light_share = walk.first_share;
     if (!connectable(light[light.n - 1].guide)) continue;
     Candidate c;
     const bool seen =
         join_camera(*job.scene, work.sample.lens, light, light.n, work.light_share, job.walk.light_paths, c) &&
         add_if_visible(work, c, light.n, 1);
+    charge_join(work.scratch, light.n, 1);
     teach_direct(work, light[light.n - 1], seen ? luminance(c.arrives) : 0);
   }
 }
@@ -90,11 +98,12 @@ void join_surface(Work& work, const Surface& surface) {
   const Job& job = work.job;
   Subpath& camera = work.scratch.camera;
   Candidate c;
-  if (job.scene->shapes[surface.shape].light == none || !join_hit(*job.scene, job.walk.fields, camera, surface, c))
-    return;
-  add(work, c, 0, camera.n);
-  Vertex& v = camera[camera.n - 1];
-  if (work.sample.teaches) v.shines = luminance(c.arrives) * weigh(work, c);
+  if (job.scene->shapes[surface.shape].light == none) return;
+  if (join_hit(*job.scene, job.walk.fields, camera, surface, c)) {
+    add(work, c, 0, camera.n);
+    if (work.sample.teaches) camera[camera.n - 1].shines = luminance(c.arrives) * weigh(work, c);
+  }
+  charge_join(work.scratch, 0, camera.n);
 }
 
 // s = 1: next-event estimation.
@@ -106,6 +115,7 @@ void join_next_event(Work& work) {
   Candidate c;
   const bool lit = join_light(*job.scene, job.walk.fields, work.sample.sampler, camera, t, job.walk.light_paths, c) &&
                    add_if_visible(work, c, 1, t);
+  charge_join(work.scratch, 1, t);
   teach_direct(work, camera[t - 1], lit ? luminance(c.arrives) : 0);
 }
 
@@ -121,9 +131,10 @@ void join_all(Work& work, const Surface& surface) {
   const int most = std::min(light.n, job.walk.max_edges + 1 - t);
   Candidate c;
   for (int s = 2; s <= most; ++s)
-    if (connectable(light[s - 1].guide) &&
-        join_vertices(light, s, work.light_share, camera, t, job.walk.light_paths, c))
-      add_if_visible(work, c, s, t);
+    if (connectable(light[s - 1].guide)) {
+      if (join_vertices(light, s, work.light_share, camera, t, job.walk.light_paths, c)) add_if_visible(work, c, s, t);
+      charge_join(work.scratch, s, t);
+    }
 }
 
 void join_escapes(Work& work, const Walk& walk) {
@@ -131,6 +142,7 @@ void join_escapes(Work& work, const Walk& walk) {
   Candidate c;
   for (const uint32_t light : work.job.scene->infinite_lights)
     if (join_escape(*work.job.scene, work.job.walk.fields, light, camera, walk, c)) add(work, c, 0, camera.n + 1);
+  charge_join(work.scratch, 0, camera.n + 1);
 }
 
 // What both subpaths teach, and that the lens sees the camera subpath's first vertex.
@@ -151,19 +163,25 @@ void trace_bdpt(const Job& job, Sample& sample, Scratch& scratch) {
   Work work{job, sample, scratch};
   scratch.light.n = 0;
   if (job.walk.light_paths > 0) trace_light_subpath(work);
+  charge(scratch, scratch.ledger->light_ticks);
   Subpath& camera = scratch.camera;
   Walk walk;
   start_camera(*job.scene, job.walk, sample.raster, sample.lens, camera, walk);
   Surface surface;
   do {
     ++scratch.counters.camera_rays;
-    if (!step(*job.scene, *job.accel, job.walk, camera, walk, surface)) {
+    const bool hit = step(*job.scene, *job.accel, job.walk, camera, walk, surface);
+    charge(scratch, scratch.ledger->camera_ticks);
+    if (!hit) {
       join_escapes(work, walk);
       break;
     }
     join_all(work, surface);
   } while (camera.n <= job.walk.max_edges && scatter(job.walk, sample.sampler, camera, walk));
-  if (sample.teaches) teach(work);
+  charge(scratch, scratch.ledger->camera_ticks);
+  if (!sample.teaches) return;
+  teach(work);
+  charge(scratch, scratch.ledger->learn_ticks);
 }
 
 }  // namespace ajar

@@ -21,7 +21,7 @@ void film_fields(Io& io, State& film) {
 template <class Io, class State>
 void stats_fields(Io& io, State& stats) {
   io.value(stats.counters), io.value(stats.rejected), io.value(stats.seconds), io.value(stats.cpu_seconds);
-  io.value(stats.learn_seconds), io.value(stats.learn_cpu_seconds);
+  io.value(stats.learn_seconds), io.value(stats.learn_cpu_seconds), io.value(stats.ledger);
 }
 
 void write(Writer& w, const Learning& l) {

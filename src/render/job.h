@@ -6,6 +6,7 @@
 #include "ajar/join/connect.h"
 #include "ajar/path/record.h"
 #include "ajar/render/learning.h"
+#include "ajar/render/ledger.h"
 #include "ajar/render/options.h"
 
 namespace ajar {
@@ -43,6 +44,8 @@ struct Scratch {
   uint64_t rejected = 0;
   uint64_t rejected_at = no_path;               ///< path of the chunk's first rejected value
   std::vector<Splat>* splats = nullptr;         ///< of the chunk
+  Ledger* ledger = nullptr;                     ///< of the chunk
+  uint64_t clock = 0;                           ///< when the part at work began; 0: the sample is not timed
   std::vector<Strategy>* strategies = nullptr;  ///< of the chunk, null unless asked for
 
   static constexpr uint64_t no_path = ~0ull;
@@ -54,6 +57,37 @@ using Trace = void (*)(const Job&, Sample&, Scratch&);
 void trace_path(const Job&, Sample&, Scratch&);
 void trace_bdpt(const Job&, Sample&, Scratch&);
 void trace_light(const Job&, Sample&, Scratch&);
+
+/// The time since the last charge goes to a part of the ledger.
+inline void charge(Scratch& scratch, uint64_t& part) {
+  if (scratch.clock == 0) return;
+  const uint64_t now = clock_ticks(), took = now - scratch.clock;
+  if (took < interrupted_ticks) part += took;
+  scratch.clock = now;
+}
+
+/// A join was tried, with success or without.
+inline void charge_join(Scratch& scratch, int s, int t) {
+  StrategyCost& cost = scratch.ledger->at(s, t);
+  ++cost.joins;
+  charge(scratch, cost.ticks);
+}
+
+/// Notes what a join adds to its pixel.
+inline void gain(Scratch& scratch, int s, int t, const Rgb& pixel) {
+  StrategyCost& cost = scratch.ledger->at(s, t);
+  ++cost.visible;
+  if (const float energy = luminance(pixel); std::abs(energy) < infinity) cost.energy += double(energy);
+}
+
+/// The same of a light path's splat, whose filter's integral is 1. What filters carry over the border of the film, one
+/// way and the other, is taken for equal.
+inline void gain_splat(const Job& job, Scratch& scratch, int s, const Splat& splat) {
+  const Camera& c = job.scene->camera;
+  const Vec2 at = splat.raster - Vec2(c.crop_x, c.crop_y);
+  const bool inside = at.x >= 0 && at.y >= 0 && at.x < float(c.crop_width) && at.y < float(c.crop_height);
+  gain(scratch, s, 1, inside ? splat.value * float(1 / job.walk.light_paths) : Rgb(0));
+}
 
 /// Law 6: only finite, non-negative values may go on; others are counted.
 inline bool accept(const Rgb& value, const Sample& sample, Scratch& scratch) {

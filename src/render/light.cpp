@@ -17,13 +17,19 @@ void trace_light(const Job& job, Sample& sample, Scratch& scratch) {
     const bool joins = light.n == 1 || connectable(light[light.n - 1].guide);
     if (joins && join_camera(scene, sample.lens, light, light.n, 1, job.walk.light_paths, c)) {
       ++scratch.counters.shadow_rays;
-      if (visible(*job.accel, c.segment) && accept(c.value, sample, scratch))
+      ++scratch.ledger->at(light.n, 1).rays;
+      if (visible(*job.accel, c.segment) && accept(c.value, sample, scratch)) {
         scratch.splats->push_back({c.raster, c.value});
+        gain_splat(job, scratch, light.n, scratch.splats->back());
+      }
     }
+    if (joins) charge_join(scratch, light.n, 1);
     if (light.n >= job.walk.max_edges) return;
     if (light.n > 1 && !scatter(job.walk, sampler, light, walk)) return;
     ++scratch.counters.light_rays;
-    if (!step(scene, *job.accel, job.walk, light, walk, surface)) return;
+    const bool hit = step(scene, *job.accel, job.walk, light, walk, surface);
+    charge(scratch, scratch.ledger->light_ticks);
+    if (!hit) return;
   }
 }
 

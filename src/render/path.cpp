@@ -30,14 +30,15 @@ Rgb hit_sky(const Scene& scene, Heuristic h, const Vec3& from, const Vec3& d, do
   return sum;
 }
 
-// Next-event estimation: s = 1.
-Rgb direct(const Job& job, const Guide& guide, const Surface& at, Sampler& sampler, Counters& counters) {
+// Next-event estimation: s = 1, at the last of t vertices.
+Rgb direct(const Job& job, const Guide& guide, const Surface& at, Sampler& sampler, int t, Scratch& scratch) {
   float pick;
   DirectSample d;
   if (!choose_light_point(*job.scene, guide, at.p, sampler, pick, d)) return Rgb(0);
   const GuideEval e = evaluate(guide, d.wi, Mode::radiance);
   if (is_black(e.f_cos)) return Rgb(0);
-  ++counters.shadow_rays;
+  ++scratch.counters.shadow_rays;
+  ++scratch.ledger->at(1, t).rays;
   if (!visible(*job.accel, segment_to(d, at.p, at.ng, at.error))) return Rgb(0);
   const LightPoint& l = d.point;
   const bool alone = l.delta_position || l.delta_direction;
@@ -55,6 +56,15 @@ struct Flight {
   Rgb beta{1}, survival{1};
   float promise = 0;
 };
+
+// What a join of s light and t camera vertices found goes to its pixel.
+void add(Sample& sample, Scratch& scratch, int s, int t, const Rgb& found) {
+  if (!is_black(found)) {
+    sample.value += found;
+    gain(scratch, s, t, found * sample.filter);
+  }
+  charge_join(scratch, s, t);
+}
 
 // Chooses where the path goes on; false where it ends.
 bool scatter(const Job& job, const Guide& guide, const Surface& at, int edges, Sampler& sampler, Flight& f) {
@@ -76,21 +86,26 @@ void trace_path(const Job& job, Sample& sample, Scratch& scratch) {
   const Heuristic h = job.walk.heuristic;
   const CameraRay ray = generate(scene.camera, sample.raster, sample.lens);
   Flight f{ray.o, ray.d, ray.t_min, ray.t_max, ray.o};
-  Rgb& value = sample.value;
   Guide guide;
   for (int edges = 1;; ++edges) {
     Hit hit;
     ++scratch.counters.camera_rays;
-    if (!job.accel->intersect(f.o, f.d, f.t_min, f.t_max, hit)) {
-      if (!scene.infinite_lights.empty()) value += f.beta * hit_sky(scene, h, f.from, f.d, f.pdf, f.alone);
+    const int t = edges + 1;  // vertices
+    const bool hits = job.accel->intersect(f.o, f.d, f.t_min, f.t_max, hit);
+    charge(scratch, scratch.ledger->camera_ticks);
+    if (!hits) {
+      if (!scene.infinite_lights.empty())
+        add(sample, scratch, 0, t, f.beta * hit_sky(scene, h, f.from, f.d, f.pdf, f.alone));
       return;
     }
     const Surface at = make_surface(scene, hit, f.o, f.d);
-    if (scene.shapes[hit.shape].light != none) value += f.beta * hit_light(scene, h, at, f.from, f.d, f.pdf, f.alone);
+    if (scene.shapes[hit.shape].light != none)
+      add(sample, scratch, 0, t, f.beta * hit_light(scene, h, at, f.from, f.d, f.pdf, f.alone));
     if (edges >= job.walk.max_edges) return;
     make_guide(scene, job.walk.fields, Side::camera, at, -f.d, guide);
+    charge(scratch, scratch.ledger->camera_ticks);
     if (job.next_event && connectable(guide) && !scene.lights.empty())
-      value += f.beta * direct(job, guide, at, sample.sampler, scratch.counters);
+      add(sample, scratch, 1, t, f.beta * direct(job, guide, at, sample.sampler, t, scratch));
     if (!scatter(job, guide, at, edges, sample.sampler, f)) return;
   }
 }

@@ -46,6 +46,7 @@ constexpr uint32_t least_chunks = 16;
 struct Batch {
   std::vector<std::vector<Splat>> splats;
   std::vector<std::vector<Strategy>> strategies;
+  std::vector<Ledger> ledgers;
   std::vector<uint64_t> rejected_at;  // path of each chunk's first rejected value
 };
 
@@ -62,9 +63,13 @@ Sample make_sample(const Job& job, const Film& film, int x, int y) {
   return s;
 }
 
+// Not those that are recorded more than others.
+bool is_timed(const Sample& s) { return hash(0x71c5 + s.path, s.pass) % timed_samples == 0; }
+
 void trace_pixel(const Job& job, Trace trace, Film& film, int x, int y, Scratch& scratch) {
   Sample sample = make_sample(job, film, x, y);
   const size_t splats = scratch.splats->size();
+  scratch.clock = is_timed(sample) ? clock_ticks() : 0;
   trace(job, sample, scratch);
   if (!accept(sample.value, sample, scratch)) sample.value = Rgb(0);
   ++scratch.counters.camera_paths;
@@ -125,7 +130,7 @@ void teach(RenderState& state, const RenderOptions& options) {
   const double wall = wall_seconds(), cpu = process_cpu_seconds();
   const uint32_t dropped = state.film.dropped;
   end_pass(state.learning, learn_options(options), state.film);
-  if (state.film.dropped != dropped) state.pyramid = {};
+  if (state.film.dropped != dropped) state.pyramid = {}, state.stats.ledger = {};
   state.stats.learn_seconds += wall_seconds() - wall;
   state.stats.learn_cpu_seconds += process_cpu_seconds() - cpu;
 }
@@ -207,6 +212,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
     const uint32_t from = film.chunks, count = std::min({batch_chunks, all - from, affordable_chunks(options, state)});
     batch.splats.resize(count);
     batch.strategies.resize(count);
+    batch.ledgers.assign(count, {});
     batch.rejected_at.resize(count);
     arena.execute([&] {
       tbb::parallel_for(0u, count, [&](uint32_t i) {
@@ -214,12 +220,14 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
         batch.splats[i].clear();
         batch.strategies[i].clear();
         scratch.splats = &batch.splats[i];
+        scratch.ledger = &batch.ledgers[i];
         scratch.strategies = job.techniques ? &batch.strategies[i] : nullptr;
         trace_chunk(job, trace, film, from + i, scratch);
         batch.rejected_at[i] = scratch.rejected_at;
       });
       if (film.splats) merge(film, batch.splats);
       if (job.techniques) merge(state.pyramid, film, batch.strategies);
+      for (const Ledger& ledger : batch.ledgers) stats.ledger += ledger;
       note_rejected(stats, batch.rejected_at, film, options.seed);
       film.chunks += count;
       if (film.chunks == all) finish_pass(film);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "ajar/report/account.h"
 #include "ajar/report/metrics.h"
 
 namespace ajar {
@@ -16,8 +17,6 @@ double peak_bytes() {
   getrusage(RUSAGE_SELF, &usage);
   return double(usage.ru_maxrss) * 1024;
 }
-
-double per(double amount, double of) { return of > 0 ? amount / of : 0; }
 
 Json measure(const RenderState& state, const Picture& reference) {
   const Metrics m = compare(develop(state.film), reference, false);
@@ -97,22 +96,18 @@ bool race(const LoadedScene& loaded, const Budget& budget, const Picture& refere
 Json run_json(const Racer& racer) {
   const RenderStats& stats = racer.state.stats;
   const Counters& n = stats.counters;
-  return {
-      {"seed", racer.options.seed},
-      {"spp", spp_of(racer.state.film)},
-      {"seconds", stats.seconds},
-      {"cpu_seconds", stats.cpu_seconds},
-      {"samples", racer.samples},
-      {"phases_cpu",
-       {{"trace", stats.cpu_seconds - stats.learn_cpu_seconds}, {"learn", stats.learn_cpu_seconds}, {"rebuild", 0}}},
-      {"rays", {{"camera", n.camera_rays}, {"light", n.light_rays}, {"shadow", n.shadow_rays}}},
-      {"mean_path_edges",
-       {{"camera", per(double(n.camera_rays), double(n.camera_paths))},
-        {"light", per(double(n.light_rays), double(n.light_paths))}}},
-      {"zero_contribution_paths", per(double(n.zero_paths), double(n.camera_paths))},
-      {"rejected_values", stats.rejected},
-      {"field_bytes", bytes(racer.state.learning.fields)},
-      {"memory_peak_bytes", peak_bytes()}};
+  Json run = {{"seed", racer.options.seed},
+              {"spp", spp_of(racer.state.film)},
+              {"seconds", stats.seconds},
+              {"cpu_seconds", stats.cpu_seconds},
+              {"samples", racer.samples},
+              {"phases_cpu", phases_json(stats.cpu_seconds, stats.learn_cpu_seconds, stats.ledger)},
+              {"rays", {{"camera", n.camera_rays}, {"light", n.light_rays}, {"shadow", n.shadow_rays}}},
+              {"rejected_values", stats.rejected},
+              {"field_bytes", bytes(racer.state.learning.fields)},
+              {"memory_peak_bytes", peak_bytes()}};
+  add_account(run, racer.state);
+  return run;
 }
 
 }  // namespace ajar

@@ -69,6 +69,84 @@ TEST_F(Render, NoiseStopsAndIsRecorded) {
   EXPECT_EQ(nlohmann::json::parse(last)["estimated_relmse"], json["estimated_relmse"]);
 }
 
+// The account of the image and of the last line of its log are one and the same.
+TEST_F(Render, AccountIsRecorded) {
+  const auto json = run({"--spp", "64", "--log", log});
+  std::ifstream lines(log);
+  std::string line, last;
+  while (std::getline(lines, line)) last = line;
+  const auto logged = nlohmann::json::parse(last);
+  for (const char* key : {"mean_path_edges", "zero_contribution_paths", "tracing", "strategies"})
+    EXPECT_EQ(json[key], logged[key]) << key;
+  EXPECT_FALSE(json.contains("fields"));
+  EXPECT_GT(json["mean_path_edges"]["camera"], 1);
+  EXPECT_EQ(json["mean_path_edges"]["light"], 0);
+  double energy = 0, time = 0;
+  for (const auto& row : json["strategies"]) {
+    energy += row["energy"].get<double>(), time += row["time"].get<double>();
+    EXPECT_LE(row["s"], 1);
+    EXPECT_LE(row["s"].get<int>() + row["t"].get<int>(), 5) << "of at most 4 edges";
+  }
+  EXPECT_NEAR(energy, 1, 1e-9);
+  const auto& tracing = json["tracing"];
+  EXPECT_NEAR(time, tracing["joins"].get<double>(), 1e-9);
+  double all = 0;
+  for (const auto& [part, share] : tracing.items()) all += share.get<double>();
+  EXPECT_NEAR(all, 1, 1e-9);
+  EXPECT_GT(tracing["camera"], 0.01);
+  EXPECT_EQ(tracing["light"], 0);
+  EXPECT_GT(tracing["joins"], 0.01);
+  EXPECT_EQ(json["cpu_seconds"]["learn"], 0);
+  EXPECT_EQ(logged["phases_cpu"]["rebuild"], 0);
+}
+
+// The other integrator gets a ninth of the time; what is expected of it scales with the time.
+TEST_F(Render, VersusTellsWhatAnotherLeaves) {
+  EXPECT_FALSE(run({"--spp", "1"}).contains("versus"));
+  const auto json = run({"--cpu-time", "0.6s", "--versus", "bdpt"});
+  const auto& v = json["versus"];
+  EXPECT_EQ(v["integrator"], "bdpt");
+  const double spent = json["cpu_seconds"]["trace"], other = v["cpu_seconds"];
+  EXPECT_GE(spent, 0.5);
+  EXPECT_GE(other, spent / 9);
+  EXPECT_LT(spent + other, 0.9) << "both together take the budget, and a batch";
+  EXPECT_GE(v["spp"].get<double>(), 2);
+  const double found = v["estimated_relmse_trimmed"], expected = v["expected_relmse_trimmed"];
+  EXPECT_NEAR(expected, found * other / spent, 1e-9 * found);
+  EXPECT_NEAR(v["error_ratio"].get<double>(), expected / json["estimated_relmse_trimmed"].get<double>(), 1e-9 * found);
+}
+
+// The comparison costs the image nothing but time, and is no part of it.
+TEST_F(Render, VersusLeavesTheImageAlone) {
+  run({"--spp", "9"});
+  std::ifstream first(out, std::ios::binary);
+  const std::string plain{std::istreambuf_iterator<char>(first), {}};
+  const auto json = run({"--spp", "9", "--versus", "light"});
+  EXPECT_EQ(json["spp"], 9);
+  std::ifstream second(out, std::ios::binary);
+  const std::string held{std::istreambuf_iterator<char>(second), {}};
+  const auto pixels = [](const std::string& exr) { return exr.substr(exr.size() / 2); };  // times stand in the header
+  EXPECT_EQ(pixels(plain), pixels(held));
+}
+
+// A single pass has no second half to compare with: that is said, not made up.
+TEST_F(Render, VersusMayHaveTooLittleTime) {
+  const auto json = run({"--spp", "1", "--versus", "bdpt"});
+  EXPECT_TRUE(json["versus"]["error_ratio"].is_null());
+}
+
+TEST_F(Render, WhatCannotBeHeldAgainstIsAnError) {
+  for (const char* other : {"path", "guided-bdpt", "metropolis", ""}) {
+    try {
+      run({"--spp", "1", "--versus", other});
+      EXPECT_EQ(std::string(other), "") << "is no error";  // as if it were not given
+    } catch (const Error& error) {
+      EXPECT_EQ(std::string(error.what()).find("--versus " + std::string(other) + ": cannot be held against path"), 0u)
+          << error.what();
+    }
+  }
+}
+
 TEST_F(Render, NoiseOutOfReachEndsAtTheLimit) {
   const auto counted = run({"--noise", "1e-12", "--spp", "3"});
   EXPECT_EQ(counted["spp"], 3);

@@ -89,6 +89,14 @@ void expect_same_bytes(const RenderState& a, const RenderState& b) {
   EXPECT_EQ(a.stats.counters.camera_rays, b.stats.counters.camera_rays);
   EXPECT_EQ(a.stats.counters.light_rays, b.stats.counters.light_rays);
   EXPECT_EQ(a.stats.counters.shadow_rays, b.stats.counters.shadow_rays);
+  for (int s = 0; s <= Ledger::most; ++s)
+    for (int t = 0; t <= Ledger::most; ++t) {
+      const StrategyCost &x = a.stats.ledger.strategies[s][t], &y = b.stats.ledger.strategies[s][t];
+      EXPECT_EQ(x.joins, y.joins);
+      EXPECT_EQ(x.rays, y.rays);
+      EXPECT_EQ(x.visible, y.visible);
+      EXPECT_EQ(x.energy, y.energy);
+    }
   EXPECT_EQ(a.film.dropped, b.film.dropped);
   expect_same_learning(a.learning, b.learning);
 }

@@ -47,5 +47,62 @@ TEST(Techniques, Glossy) {
 }
 TEST(Techniques, Sky) { expect_all_equal(panels(Material{}, LightKind::constant), 3); }
 
+double sum(const std::vector<glm::dvec3>& layer) {
+  double energy = 0;
+  for (const glm::dvec3& pixel : layer) energy += double(luminance(Rgb(pixel)));
+  return energy;
+}
+
+// What the ledger says of a strategy is what its image holds, but for splats at the border, whose filter goes over it.
+void expect_accounted(const std::string& integrator) {
+  RenderOptions options = statistical(integrator, 4);
+  options.spp = 12;  // the young passes of a guided render are no part of it
+  options.techniques = true;
+  const Scene scene = panels(Material{}, LightKind::area);
+  const Accel accel(scene);
+  RenderState state = start_render(scene, options);
+  render(scene, accel, options, state, {});
+  Ledger& ledger = state.stats.ledger;
+  double energy = 0;
+  for (const auto& [st, layer] : state.pyramid.layers) {
+    const StrategyCost& cost = ledger.at(st.first, st.second);
+    const double there = sum(layer.weighted);
+    energy += there;
+    EXPECT_NEAR(cost.energy, there, (st.second == 1 ? 0.02 : 1e-5) * there) << st.first << ' ' << st.second;
+    EXPECT_GE(cost.joins, cost.visible);
+    EXPECT_GT(cost.visible, 0u);
+    EXPECT_EQ(cost.rays >= cost.visible, st.first > 0) << "only s = 0 sends no shadow rays";
+  }
+  EXPECT_GT(state.pyramid.layers.size(), 5u);
+  EXPECT_NEAR(total_energy(ledger), energy, 0.01 * energy);
+}
+TEST(Ledger, HoldsWhatStrategiesBring) { expect_accounted("bdpt"); }
+TEST(Ledger, ForgetsDroppedPasses) { expect_accounted("guided-bdpt"); }
+
+// Whatever was evaluated together with others, a path tracer's two strategies are the image.
+TEST(Ledger, OfOneSidedIntegrators) {
+  for (const char* integrator : {"path", "light"}) {
+    RenderOptions options = statistical(integrator, 4);
+    options.spp = 256;
+    const Scene scene = panels(Material{}, LightKind::area);
+    const Accel accel(scene);
+    RenderState state = start_render(scene, options);
+    render(scene, accel, options, state, {});
+    const Ledger& ledger = state.stats.ledger;
+    std::vector<glm::dvec3> image = state.film.camera_sum;
+    for (size_t i = 0; i < state.film.splat_sum.size(); ++i) image[i] += state.film.splat_sum[i];
+    const double border = options.integrator == "light" ? 0.06 : 1e-5;  // the lamp is cut by it
+    EXPECT_NEAR(total_energy(ledger), sum(image), border * sum(image)) << integrator;
+    uint64_t rays = 0;
+    for (const auto& row : ledger.strategies)
+      for (const StrategyCost& c : row) rays += c.rays;
+    EXPECT_EQ(rays, state.stats.counters.shadow_rays) << integrator;
+    EXPECT_GT(ledger.camera_ticks + ledger.light_ticks, 0u);
+    EXPECT_EQ(ledger.learn_ticks, 0u);
+    EXPECT_GT(total_ticks(ledger), join_ticks(ledger));
+    EXPECT_GT(join_ticks(ledger), 0u);
+  }
+}
+
 }  // namespace
 }  // namespace ajar

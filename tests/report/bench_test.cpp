@@ -27,7 +27,8 @@ Json timeless(const Json& json) {
   Json out = json.is_array() ? Json::array() : Json::object();
   for (const auto& [key, value] : json.items()) {
     const bool time = key.find("seconds") != std::string::npos || key == "date" || key == "phases_cpu" ||
-                      key == "memory_peak_bytes" || key == "slope" || key == "time_ratio" || key == "command";
+                      key == "memory_peak_bytes" || key == "slope" || key == "time_ratio" || key == "command" ||
+                      key == "tracing" || key == "time";
     if (time && json.is_object()) continue;
     json.is_array() ? out.push_back(timeless(value)) : void(out[key] = timeless(value));
   }

@@ -229,6 +229,13 @@ async function test_drawers() {
   near('shares add to all', shares.reduce((a, b) => a + b, 0), 100, 1.5);
   input(one('.exposure', pyramid), 3);
   await until('their exposure', () => Math.max(...colour()) > Math.max(...before) + 40);
+  const drawer = one('.share', room);
+  drawer.open = true;
+  if (!await until('the shares appear', () => one('.shares tbody tr', drawer))) return;
+  const row = all('.shares tbody tr', drawer).map(({cells}) => [...cells].map(cell => cell.textContent));
+  same('a row for each strategy, shortest paths first', row.map(([st]) => st), ['0, 2', '1, 2', '8+, 1']);
+  same('energy, time, rays and what they see', row[1].slice(1, 5), ['60 %', '20 %', '1.5', '50 %']);
+  same('what a method does not do is left blank', row[2].slice(5, 9), ['–', '–', '–', '–']);
   const fields = one('.learned', room);
   fields.open = true;
   await until('the field appears', () => one('img', fields)?.naturalWidth === 64);
@@ -250,7 +257,7 @@ async function test_rest() {
   same('verdicts', texts('.summary .verdict'), ['baseline', '▼ loss', '▲ win', '≈ tie', 'baseline']);
   const total = all('.summary tfoot tr').find(row => row.textContent.includes('guided-bdpt'));
   check('geometric mean', total.textContent.includes(`${expected.guided_ratio}×`), total.textContent);
-  same('bars', all('.bars', room).length, 4);
+  same('bars', all('.bars', room).length, 5);
   same('estimates', all('#estimates .spot').length, expected.estimates);
   near('their ratio', number_in(one('.estimates tbody tr').cells[2].textContent), 0.95, 0.08);
   one('.theme').click();

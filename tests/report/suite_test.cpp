@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ajar/core/error.h"
+#include "kit/files.h"
 
 namespace ajar {
 namespace {
@@ -199,6 +200,29 @@ TEST_F(SuiteFile, WithoutQuickThereIsNoQuick) {
   json.erase("quick");
   EXPECT_FALSE(load(json).quick);
   EXPECT_THROW(load(json, true), Error);
+}
+
+// The suites that come with Ajar. Their scenes in this tree are there; those that are not are optional.
+TEST(Suites, ThatComeWithAjar) {
+  for (const char* name : {"door", "sweep", "unguided"})
+    for (const bool quick : {false, true}) {
+      const Suite suite = load_suite(kit::source_path(std::string("benchmarks/") + name + ".json"), quick);
+      EXPECT_GE(suite.methods.size(), 2u) << name;
+      EXPECT_GE(suite.scenes.size(), 2u) << name;
+      EXPECT_EQ(suite.quick, quick);
+    }
+}
+
+// Each scene is brighter lit than the one before, as its door is nearer to closed.
+TEST(Suites, SweepClosesTheDoor) {
+  const Suite suite = load_suite(kit::source_path("benchmarks/sweep.json"), false);
+  ASSERT_EQ(suite.scenes.size(), 6u);
+  for (size_t i = 1; i < suite.scenes.size(); ++i) {
+    const auto &wide = suite.scenes[i - 1].defines, &narrow = suite.scenes[i].defines;
+    EXPECT_LT(std::stod(narrow.at("door")), std::stod(wide.at("door")));
+    EXPECT_GT(std::stod(narrow.at("radiance")), std::stod(wide.at("radiance")));
+    EXPECT_EQ(suite.scenes[i].name, "door-" + narrow.at("door"));
+  }
 }
 
 TEST(SuiteOptions, ThoseThatDifferFromTheirDefaults) {

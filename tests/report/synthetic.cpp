@@ -47,6 +47,16 @@ json sample(const Kind& kind, double cpu, uint32_t seed, uint32_t step) {
           {"estimated_relmse", step == 0 ? json() : json(error * std::exp(0.25 * noise(seed + 3, step) - 0.05))}};
 }
 
+json strategies(double paths, bool light) {
+  const auto row = [&](int s, int t, double rays, double energy, double time) -> json {
+    return {{"s", s},           {"t", t},      {"joins", paths}, {"rays", rays}, {"visible", rays / 2},
+            {"energy", energy}, {"time", time}};
+  };
+  json list = {row(0, 2, 0, 0.4, 0.1), row(1, 2, 1.5 * paths, 0.6, 0.2)};
+  if (light) list.push_back(row(8, 1, paths, 0, 0.3));
+  return list;
+}
+
 json run(const Kind& kind, uint32_t seed, double cpu) {
   json samples = json::array();
   uint32_t step = 0;
@@ -64,6 +74,8 @@ json run(const Kind& kind, uint32_t seed, double cpu) {
           {"rays", {{"camera", camera ? paths * 4.1 : 0}, {"light", light ? paths * 3.7 : 0}, {"shadow", paths * 5.2}}},
           {"mean_path_edges", {{"camera", camera ? 4.1 : 0}, {"light", light ? 3.7 : 0}}},
           {"zero_contribution_paths", 0.31 + 0.1 * kind.slope * kind.slope * 0.4},
+          {"tracing", {{"camera", 0.3}, {"light", light ? 0.3 : 0}, {"joins", light ? 0.3 : 0.6}, {"learn", 0.1}}},
+          {"strategies", strategies(paths, light)},
           {"rejected_values", 0},
           {"field_bytes", kind.learn > 0 ? 48e6 : 0},
           {"memory_peak_bytes", 228e6}};

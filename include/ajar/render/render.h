@@ -6,15 +6,17 @@
 
 #include "ajar/film/pyramid.h"
 #include "ajar/render/learning.h"
+#include "ajar/render/ledger.h"
 #include "ajar/render/options.h"
 
 namespace ajar {
 
 struct RenderStats {
   Counters counters;
-  uint64_t rejected = 0;                ///< values dropped for not being finite and non-negative (law 6)
-  std::vector<std::string> replay;      ///< what replays the first of them
-  double seconds = 0, cpu_seconds = 0;  ///< of tracing, merging and learning; sums over resumed parts
+  Ledger ledger;                                    ///< of what is in the image: without dropped passes
+  uint64_t rejected = 0;                            ///< values dropped for not being finite and non-negative (law 6)
+  std::vector<std::string> replay;                  ///< what replays the first of them
+  double seconds = 0, cpu_seconds = 0;              ///< of tracing, merging and learning; sums over resumed parts
   double learn_seconds = 0, learn_cpu_seconds = 0;  ///< of these, learning between passes
 };
 

@@ -101,6 +101,14 @@ function charts_of(scene) {
         {title: 'CPU time', unit: '% of CPU time', most: 100}),
     chart(
         runs => {
+          const parts = parts_of(
+              runs, {camera: 'camera walks', light: 'light walks', joins: 'joins'},
+              (run, key) => 100 * run.tracing?.[key] / (1 - run.tracing?.learn));
+          return {parts, note: ''};
+        },
+        {title: 'Tracing', unit: '% of tracing time', most: 100}),
+    chart(
+        runs => {
           const parts = parts_of(runs, {camera: 'camera', light: 'light'}, (run, key) => run.mean_path_edges?.[key]);
           return {parts, note: parts.filter(({value}) => value > 0).map(({value}) => number(value, 2)).join(', ')};
         },
@@ -127,6 +135,8 @@ function cost_table(scene) {
     ],
     ['Memory peak', runs => bytes(mean(runs.map(run => run.memory_peak_bytes)))],
     ['Fields', runs => bytes(mean(runs.map(run => run.field_bytes)))],
+    ['Cells', runs => number(mean(runs.map(run => run.fields?.cells)))],
+    ['Strata nodes', runs => number(mean(runs.map(run => run.fields?.nodes.q + run.fields?.nodes.w)))],
     ['Rejected values', runs => grouped(runs.reduce((sum, run) => sum + (run.rejected_values ?? 0), 0))],
   ];
   const rows = (scene.methods ?? [])

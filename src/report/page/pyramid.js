@@ -1,4 +1,4 @@
-// What single strategies (s, t) bring, and pictures of learned fields; made when they are asked for.
+// What single strategies (s, t) bring and cost, and pictures of learned fields; made when they are asked for.
 
 /** An on-demand part; fill(box) runs when it is first opened. */
 function drawer(title, class_name, fill) {
@@ -91,8 +91,52 @@ function fill_fields(methods, box) {
                           el('figcaption', {}, title ?? '')))));
 }
 
+/** A row for each strategy, the methods side by side; means over the seeds. */
+function fill_shares(scene, methods, box) {
+  const all_of = ({runs}) => runs.flatMap(run => run.strategies ?? []);
+  const keys = [...new Set(methods.flatMap(all_of).map(({s, t}) => `${s} ${t}`))].map(key => key.split(' ').map(Number));
+  keys.sort(([s, t], [s2, t2]) => s + t - s2 - t2 || s - s2);
+  const name = x => x < 8 ? String(x) : '8+';
+  const pixels = scene.width * scene.height;
+  const of_method = (method, s, t) => {
+    const rows = method.runs.map(run => run.strategies?.find(row => row.s === s && row.t === t));
+    const share = key => {
+      const value = mean(rows.map(row => row?.[key] ?? 0));
+      return value === 0 ? '0' : `${number(100 * value, 2)} %`;
+    };
+    if (!rows.some(Boolean)) return [nothing, nothing, nothing, nothing];
+    const sum = key => rows.reduce((total, row) => total + (row?.[key] ?? 0), 0);
+    const samples = method.runs.reduce((total, run) => total + run.spp * pixels, 0);
+    const rays = sum('rays');
+    return [
+      share('energy'), share('time'), number(rays / samples, 2),
+      rays > 0 ? `${number(100 * sum('visible') / rays, 2)} %` : nothing
+    ];
+  };
+  box.append(
+      el('div', {class: 'wide'},
+         table(
+             'shares',
+             [
+               's, t',
+               ...methods.flatMap(
+                   ({name}) =>
+                       [[swatch(name), `${name}: light`], 'tracing time', 'shadow rays per sample', 'of them see'])
+             ],
+             keys.map(
+                 ([s, t]) =>
+                     [`${name(s)}, ${name(t)}`, ...methods.flatMap(method => of_method(method, s, t))]))),
+      el('p', {class: 'note'},
+         'Joins of s light and t camera vertices: their share of the light in the image and of the time of tracing. ' +
+             'Time is of one sample in 256, timed part by part; walks and learning have the rest.'));
+}
+
 function write_strategies(scene, parent) {
   const methods = scene.methods ?? [];
+  const with_shares = methods.filter(({runs}) => runs?.some(({strategies}) => strategies?.length));
+  if (with_shares.length)
+    parent.append(
+        drawer('What strategies bring and cost', 'share', box => fill_shares(scene, with_shares, box)));
   const with_techniques =
       methods.filter(({techniques}) => techniques?.some(({weighted}) => weighted && files[weighted]));
   const with_fields = methods.filter(({fields}) => fields?.some(({image}) => image && files[image]));

@@ -1,0 +1,44 @@
+#include "ajar/render/ledger.h"
+
+#include <chrono>
+
+namespace ajar {
+
+Ledger& Ledger::operator+=(const Ledger& o) {
+  for (int s = 0; s <= most; ++s)
+    for (int t = 0; t <= most; ++t) {
+      StrategyCost& a = strategies[s][t];
+      const StrategyCost& b = o.strategies[s][t];
+      a.joins += b.joins, a.rays += b.rays, a.visible += b.visible, a.ticks += b.ticks, a.energy += b.energy;
+    }
+  camera_ticks += o.camera_ticks, light_ticks += o.light_ticks, learn_ticks += o.learn_ticks;
+  return *this;
+}
+
+uint64_t clock_ticks() {
+#if defined(__x86_64__)
+  return __builtin_ia32_rdtsc();
+#else
+  return uint64_t(std::chrono::steady_clock::now().time_since_epoch().count());
+#endif
+}
+
+uint64_t join_ticks(const Ledger& ledger) {
+  uint64_t sum = 0;
+  for (const auto& row : ledger.strategies)
+    for (const StrategyCost& c : row) sum += c.ticks;
+  return sum;
+}
+
+uint64_t total_ticks(const Ledger& ledger) {
+  return join_ticks(ledger) + ledger.camera_ticks + ledger.light_ticks + ledger.learn_ticks;
+}
+
+double total_energy(const Ledger& ledger) {
+  double sum = 0;
+  for (const auto& row : ledger.strategies)
+    for (const StrategyCost& c : row) sum += c.energy;
+  return sum;
+}
+
+}  // namespace ajar

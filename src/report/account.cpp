@@ -1,0 +1,66 @@
+#include "ajar/report/account.h"
+
+#include <nlohmann/json.hpp>
+
+namespace ajar {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double per(double amount, double of) { return of != 0 ? amount / of : 0; }
+
+Json strategies_json(const Ledger& ledger) {
+  const double energy = total_energy(ledger), ticks = double(total_ticks(ledger));
+  Json list = Json::array();
+  for (int s = 0; s <= Ledger::most; ++s)
+    for (int t = 1; t <= Ledger::most; ++t) {
+      const StrategyCost& c = ledger.strategies[s][t];
+      if (c.joins == 0) continue;
+      list.push_back({{"s", s},
+                      {"t", t},
+                      {"joins", c.joins},
+                      {"rays", c.rays},
+                      {"visible", c.visible},
+                      {"energy", per(c.energy, energy)},
+                      {"time", per(double(c.ticks), ticks)}});
+    }
+  return list;
+}
+
+Json tracing_json(const Ledger& l) {
+  const double ticks = double(total_ticks(l));
+  return {{"camera", per(double(l.camera_ticks), ticks)},
+          {"light", per(double(l.light_ticks), ticks)},
+          {"joins", per(double(join_ticks(l)), ticks)},
+          {"learn", per(double(l.learn_ticks), ticks)}};
+}
+
+Json fields_json(const Learning& learning, const Film& film) {
+  const Fields& f = learning.fields;
+  return {{"structure", structure_names[size_t(f.structure)]},
+          {"bytes", bytes(f)},
+          {"cells", f.cells.size()},
+          {"nodes", {{"q", f.q.nodes.size()}, {"w", f.w.nodes.size()}}},
+          {"generation", f.generation},
+          {"dropped_passes", dropped_passes(learning, film)}};
+}
+
+}  // namespace
+
+Json phases_json(double seconds, double between_passes, const Ledger& ledger) {
+  const double traced = seconds - between_passes;
+  const double learn = traced * per(double(ledger.learn_ticks), double(total_ticks(ledger)));
+  return {{"trace", traced - learn}, {"learn", learn}, {"rebuild", between_passes}};
+}
+
+void add_account(Json& record, const RenderState& state) {
+  const Counters& n = state.stats.counters;
+  record["mean_path_edges"] = {{"camera", per(double(n.camera_rays), double(n.camera_paths))},
+                               {"light", per(double(n.light_rays), double(n.light_paths))}};
+  record["zero_contribution_paths"] = per(double(n.zero_paths), double(n.camera_paths));
+  record["tracing"] = tracing_json(state.stats.ledger);
+  if (!state.learning.fields.table.slots.empty()) record["fields"] = fields_json(state.learning, state.film);
+  record["strategies"] = strategies_json(state.stats.ledger);
+}
+
+}  // namespace ajar
