@@ -135,7 +135,7 @@ bool wants_tangents(const Scene& scene, uint32_t material) {
   const Material& m = scene.materials[material];
   if (m.kind == MaterialKind::bumpmap || m.kind == MaterialKind::normalmap) return true;
   if (m.kind == MaterialKind::principled) return m.anisotropic.texture != none || m.anisotropic.value != Rgb(0);
-  if (m.kind == MaterialKind::roughconductor || m.kind == MaterialKind::roughdielectric)
+  if (m.kind == MaterialKind::roughconductor || m.kind == MaterialKind::roughdielectric || m.kind == MaterialKind::ward)
     return m.alpha_u.texture != m.alpha_v.texture || m.alpha_u.value != m.alpha_v.value;
   return std::any_of(m.nested.begin(), m.nested.end(),
                      [&](uint32_t id) { return id != none && wants_tangents(scene, id); });

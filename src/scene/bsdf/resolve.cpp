@@ -60,7 +60,8 @@ Facets facets(const Resolver& r, const Material& m) {
 // Diffuse light that enters, bounces inside under the boundary and leaves: internal reflectance is 1 - entering /
 // eta^2, since a boundary lets the same pass both ways but for the basic solid angle.
 Rgb under_boundary(const Material& m, const Rgb& rho, float entering) {
-  if (!m.nonlinear) return rho / entering;
+  if (m.inner == Inner::lost) return rho;
+  if (m.inner == Inner::linear) return rho / entering;
   return rho / (m.ior * m.ior * (Rgb(1) - rho) + rho * entering);
 }
 float specular_share(const Rgb& specular, const Rgb& diffuse) {
@@ -141,6 +142,23 @@ bool set_lobe(const Resolver& r, const Material& m, Lobe& lobe) {
     case MaterialKind::principled:
       set_principled(r, m, lobe);
       return true;
+    case MaterialKind::roughdiffuse: {
+      // Mitsuba's alpha is the RMS slope in the plane, sqrt(2) times that along one direction.
+      const float variance = 0.5f * sqr(look_scalar(r, m.alpha_u));
+      lobe.kind = LobeKind::roughdiffuse;
+      lobe.roughdiffuse = {look(r, m.reflectance), variance, m.simple};
+      return !is_black(lobe.roughdiffuse.reflectance);
+    }
+    case MaterialKind::difftrans:
+      lobe.kind = LobeKind::difftrans;
+      lobe.difftrans = {look(r, m.transmittance)};
+      return !is_black(lobe.difftrans.transmittance);
+    case MaterialKind::ward: {
+      const Rgb diffuse = look(r, m.reflectance), specular = look(r, m.specular);
+      lobe.kind = LobeKind::ward;
+      lobe.ward = {diffuse, specular, facets(r, m), specular_share(specular, diffuse), m.ward};
+      return true;
+    }
     default:
       lobe.kind = LobeKind::diffuse;
       lobe.diffuse = {look(r, m.reflectance)};
@@ -155,10 +173,13 @@ bool is_delta(LobeKind k) {
 bool is_smooth(LobeKind k) { return !is_delta(k) || k == LobeKind::plastic; }
 // What else than one kind of event: their samples read u_lobe.
 bool is_mixed(LobeKind k) {
-  return k != LobeKind::diffuse && k != LobeKind::conductor && k != LobeKind::roughconductor;
+  return k != LobeKind::diffuse && k != LobeKind::conductor && k != LobeKind::roughconductor &&
+         k != LobeKind::roughdiffuse && k != LobeKind::difftrans;
 }
 // Value and densities, deltas aside, for directions on two sides.
-bool transmits(LobeKind k) { return k == LobeKind::roughdielectric || k == LobeKind::principled; }
+bool transmits(LobeKind k) {
+  return k == LobeKind::roughdielectric || k == LobeKind::principled || k == LobeKind::difftrans;
+}
 
 void add(Resolver& r, uint32_t id, float weight);
 

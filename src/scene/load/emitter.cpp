@@ -75,6 +75,16 @@ void point(Params& p) {
   add(p.loader, std::move(light));
 }
 
+// The picture that a spot throws is its texture times its intensity.
+void project_texture(Params& p, double cutoff, Light& light) {
+  const Node* node = find(p, {"texture"});
+  if (node == nullptr) return;
+  const Slot picture = slot_of(p.loader, *node, Colour::ratio);
+  if (picture.texture != none && !(cutoff < 90))
+    fail(p.loader, p.node, "with a texture cutoff_angle should be less than 90 degrees");
+  light.radiance = product(p, picture, light.radiance);
+}
+
 void spot(Params& p) {
   Light light = make_light(p, LightKind::spot);
   light.radiance = Slot(colour(p, "intensity", Rgb(1), Colour::emission));
@@ -83,8 +93,7 @@ void spot(Params& p) {
   if (!(beam >= 0 && beam <= cutoff)) fail(p.loader, p.node, "beam_width should be from 0 to cutoff_angle");
   light.cos_cutoff = float(std::cos(glm::radians(cutoff)));
   light.cos_beam = float(std::cos(glm::radians(beam)));
-  if (find(p, {"texture"}) != nullptr)
-    unsupported(p.loader, p.node, "a texture on a spot light is not supported", "left out");
+  project_texture(p, cutoff, light);
   const DMat4 m = regular_to_world(p);
   light.to_world = orientation(m);
   light.to_world[3] = Vec4(Vec3(DVec3(m[3])), 1);

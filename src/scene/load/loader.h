@@ -118,6 +118,8 @@ void check_texture(Loader& loader, const Node& node);
 Slot slot(Params& params, std::initializer_list<const char*> names, const Slot& otherwise, Colour kind);
 /// The same of an element at hand.
 Slot slot_of(Loader& loader, const Node& node, Colour kind);
+/// Both multiplied; a constant if both are.
+Slot product(Params& params, const Slot& a, const Slot& b);
 /// A parameter that has to be one colour.
 Rgb colour(Params& params, const char* name, const Rgb& otherwise, Colour kind);
 /// Index into Scene::textures; kind says what the numbers in it stand for.

@@ -181,6 +181,16 @@ Slot slot(Params& params, std::initializer_list<const char*> names, const Slot& 
   return node == nullptr ? otherwise : slot_of(params.loader, *node, kind);
 }
 
+Slot product(Params& params, const Slot& a, const Slot& b) {
+  if (a.texture == none && b.texture == none) return a.value * b.value;
+  Texture t;
+  t.kind = TextureKind::scale;
+  t.color0 = a, t.color1 = b;
+  Slot s;
+  s.texture = add_texture(params.loader, params.node, std::move(t));
+  return s;
+}
+
 Slot slot_of(Loader& loader, const Node& node, Colour kind) {
   const Node& meant = follow(loader, node);
   if (!is_texture(meant)) return Slot(colour_of(loader, meant, kind));
