@@ -278,6 +278,17 @@ Scene with_material(MaterialKind kind, float alpha, int size) {
   return finished(std::move(scene));
 }
 
+// Two normal maps under one blend: a floor and a wall whose parts have normals of their own.
+Scene bent_blend(int size) {
+  Scene scene = lit_room(size);
+  Material blend;
+  blend.kind = MaterialKind::blend;
+  blend.nested = {add_example(scene, MaterialKind::normalmap), add_example(scene, MaterialKind::bumpmap), none, none};
+  const uint32_t id = add_material(scene, blend);
+  for (Shape& shape : std::span(scene.shapes).first(2)) shape.material = id;
+  return finished(std::move(scene));
+}
+
 std::span<const FeatureScene> feature_scenes() {
   using enum MaterialKind;
   static const std::array all{
@@ -303,6 +314,10 @@ std::span<const FeatureScene> feature_scenes() {
       FeatureScene{"mixture", [] { return with_material(mixture); }},
       FeatureScene{"bumpmap", [] { return bump_plane(false, 24); }},
       FeatureScene{"normalmap", [] { return bump_plane(true, 24); }},
+      FeatureScene{"bent blend", [] { return bent_blend(24); }},
+      FeatureScene{"roughdiffuse", [] { return with_material(roughdiffuse, 0.6f); }},
+      FeatureScene{"difftrans", [] { return with_material(difftrans); }},
+      FeatureScene{"ward", [] { return with_material(ward, 0.3f); }},
       FeatureScene{"instances", [] { return instanced(false, 24); }},
       FeatureScene{"mirrored instance", [] { return instanced(true, 24); }},
       FeatureScene{"many lights", [] { return many_lights(16, 1, 24); }},

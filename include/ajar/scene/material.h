@@ -65,13 +65,14 @@ struct Material {
   Slot roughness{0.5f}, anisotropic{0.0f}, metallic{0.0f}, spec_trans{0.0f}, spec_tint{0.0f}, sheen{0.0f},
       sheen_tint{0.0f}, clearcoat{0.0f}, clearcoat_gloss{0.0f}, flatness{0.0f};
 
+  bool splits = false;  ///< blend, mixture: branches with normals of their own; made by prepare_materials()
   // made by prepare_materials() for plastics: how much enters through the boundary from outside
   float entering = 0;                 ///< cosine-weighted mean
   std::vector<float> entering_table;  ///< rough boundary: rows over the cosine, one or (textured alpha) several
 };
 
-/// What makes a material impossible to evaluate (too many lobes, a nesting that comes back to itself, branches of a
-/// blend that bend the normal differently), as a phrase for a message; empty if nothing does.
+/// What makes a material impossible to evaluate (too many lobes, a nesting that comes back to itself), as a phrase for
+/// a message; empty if nothing does.
 std::string material_problem(const Scene& scene, uint32_t material);
 /// Lobes of the material after flattening; bsdf.h's max_lobes is the limit.
 int lobe_count(const Scene& scene, uint32_t material);

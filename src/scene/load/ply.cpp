@@ -26,9 +26,10 @@ size_t size_of(Type t) { return sizes[size_t(t)]; }
 bool is_integer(Type t) { return t < Type::f32; }
 
 // What a property is to us. The scalar roles of a vertex come first and number its values.
-enum Role : uint8_t { x, y, z, nx, ny, nz, u, v, red, green, blue, scalar_roles, indices, other };
+enum Role : uint8_t { x, y, z, nx, ny, nz, u, v, scalar_roles, indices, other };
 
 struct Property {
+  std::string name;
   Role role = other;
   Type type = Type::f32;       // of a list: its entries'
   std::optional<Type> length;  // of a list: its length's
@@ -66,10 +67,8 @@ int look_up(const Name (&table)[N], std::string_view text, int otherwise) {
 constexpr Name type_names[] = {{"char", 0},   {"int8", 0},    {"uchar", 1},  {"uint8", 1},  {"short", 2}, {"int16", 2},
                                {"ushort", 3}, {"uint16", 3},  {"int", 4},    {"int32", 4},  {"uint", 5},  {"uint32", 5},
                                {"float", 6},  {"float32", 6}, {"double", 7}, {"float64", 7}};
-constexpr Name vertex_names[] = {{"x", x},     {"y", y},         {"z", z},      {"nx", nx},       {"ny", ny},
-                                 {"nz", nz},   {"u", u},         {"v", v},      {"s", u},         {"t", v},
-                                 {"r", red},   {"g", green},     {"b", blue},   {"texture_u", u}, {"texture_v", v},
-                                 {"red", red}, {"green", green}, {"blue", blue}};
+constexpr Name vertex_names[] = {{"x", x}, {"y", y}, {"z", z}, {"nx", nx}, {"ny", ny},       {"nz", nz},
+                                 {"u", u}, {"v", v}, {"s", u}, {"t", v},   {"texture_u", u}, {"texture_v", v}};
 constexpr Name face_names[] = {{"vertex_indices", indices}, {"vertex_index", indices}};
 
 // Splits the header into lines and words; afterwards p is at the body.
@@ -132,6 +131,7 @@ struct HeaderReader {
     if (list) out.length = type(2);
     out.type = type(list ? 3 : 1);
     const std::string_view name = word(list ? 4 : 2);
+    out.name = name;
     if (!list && element == "vertex") out.role = Role(look_up(vertex_names, name, other));
     if (list && element == "face") out.role = Role(look_up(face_names, name, other));
     if (list && !is_integer(*out.length)) fail(fmt::format("the length of list \"{}\" is not an integer", name));
@@ -163,8 +163,57 @@ Header read_header(HeaderReader& in) {
 
 struct Polygons {
   std::vector<uint32_t> corners;
-  std::vector<size_t> ends;  // one past each polygon's last corner
+  std::vector<size_t> ends;           // one past each polygon's last corner
+  std::vector<Attribute> attributes;  // a value a polygon
 };
+
+// Properties that are one attribute of a mesh.
+struct Group {
+  std::string name;
+  std::array<size_t, 3> parts{};  // indices of properties; a single number is all three
+  bool color = false;             // integers are parts of 1
+};
+
+const Property* scalar(const Element& e, size_t i) {
+  return i < e.properties.size() && !e.properties[i].length ? &e.properties[i] : nullptr;
+}
+
+std::optional<size_t> index_of(const Element& e, std::string_view name) {
+  for (size_t i = 0; i < e.properties.size(); ++i)
+    if (e.properties[i].name == name && scalar(e, i)) return i;
+  return {};
+}
+
+// Mitsuba's convention: r g b (or red green blue) is "color"; NAME_x y z, NAME_0 1 2 and NAME_1 2 3 side by side are
+// NAME, NAME_r g b is NAME_color; a fourth part is passed over, and the first alone is a single number.
+std::vector<Group> groups_of(const Element& e, const std::string& prefix) {
+  std::vector<Group> groups;
+  for (const auto& names : {std::array{"r", "g", "b"}, {"red", "green", "blue"}}) {
+    const auto r = index_of(e, names[0]), g = index_of(e, names[1]), b = index_of(e, names[2]);
+    if (r && g && b && groups.empty()) groups.push_back({prefix + "color", {*r, *g, *b}, true});
+  }
+  constexpr std::string_view series[] = {"xyzw", "rgba", "0123", "1234"};
+  for (size_t i = 0; i < e.properties.size();) {
+    const size_t begin = i++;
+    const std::string& first = e.properties[begin].name;
+    if (first.size() < 3 || first[first.size() - 2] != '_' || !scalar(e, begin)) continue;
+    const std::string stem = first.substr(0, first.size() - 1);
+    for (const std::string_view& letters : series) {
+      size_t n = 0;
+      for (const Property* p = nullptr; n < 4 && (p = scalar(e, begin + n)) && p->name == stem + letters[n];) ++n;
+      if (n == 0) continue;
+      i = begin + n;
+      if (n == 2) break;  // neither a number nor a colour
+      const bool color = letters[0] == 'r';
+      const size_t step = n == 1 ? 0 : 1;
+      groups.push_back({prefix + (color ? stem + "color" : stem.substr(0, stem.size() - 1)),
+                        {begin, begin + step, begin + 2 * step},
+                        color});
+      break;
+    }
+  }
+  return groups;
+}
 
 // The body, value by value.
 template <Format F>
@@ -266,26 +315,43 @@ struct Body {
                               e.name));
   }
 
+  // One row's values, lists aside: those are handed to `list`.
+  template <class List>
+  void read_row(const Element& e, std::vector<double>& values, const List& list) {
+    values.resize(e.properties.size());
+    for (size_t i = 0; i < e.properties.size(); ++i)
+      if (e.properties[i].length)
+        list(e.properties[i]);
+      else
+        values[i] = take(e.properties[i].type);
+  }
+
+  static Rgb value_of(const Element& e, const Group& group, const std::vector<double>& values) {
+    const auto part = [&](size_t i) { return values[i] / (group.color ? largest[size_t(e.properties[i].type)] : 1); };
+    return Rgb(part(group.parts[0]), part(group.parts[1]), part(group.parts[2]));
+  }
+
   void read_vertices(const Element& e, Mesh& mesh) {
     start(e);
     if (!e.has({x, y, z})) throw Error(fmt::format("{}: element vertex lacks x, y or z", file));
-    const bool normals = e.has({nx, ny, nz}), uvs = e.has({u, v}), colors = e.has({red, green, blue});
+    const bool normals = e.has({nx, ny, nz}), uvs = e.has({u, v});
+    const std::vector<Group> groups = groups_of(e, "vertex_");
+    mesh.attributes.clear();
+    for (const Group& group : groups) mesh.attributes.push_back({group.name, false, {}});
     mesh.positions.reserve(e.count);
     if (normals) mesh.normals.reserve(e.count);
     if (uvs) mesh.uvs.reserve(e.count);
-    if (colors) mesh.colors.reserve(e.count);
+    for (Attribute& a : mesh.attributes) a.values.reserve(e.count);
+    std::vector<double> values;
     std::array<double, scalar_roles> value{};
     for (row = 0; row < e.count; ++row) {
-      for (const Property& property : e.properties) {
-        if (property.role >= scalar_roles)
-          skip(property);
-        else
-          value[property.role] = take(property.type) / (property.role >= red ? largest[size_t(property.type)] : 1);
-      }
+      read_row(e, values, [&](const Property& list) { skip(list); });
+      for (size_t i = 0; i < values.size(); ++i)
+        if (e.properties[i].role < scalar_roles) value[e.properties[i].role] = values[i];
       mesh.positions.emplace_back(value[x], value[y], value[z]);
       if (normals) mesh.normals.emplace_back(value[nx], value[ny], value[nz]);
       if (uvs) mesh.uvs.emplace_back(value[u], value[v]);
-      if (colors) mesh.colors.emplace_back(value[red], value[green], value[blue]);
+      for (size_t k = 0; k < groups.size(); ++k) mesh.attributes[k].values.push_back(value_of(e, groups[k], values));
     }
   }
 
@@ -293,16 +359,18 @@ struct Body {
     start(e);
     if (e.count > 0 && !e.has({indices}))
       throw Error(fmt::format("{}: element face lacks the list vertex_indices", file));
+    const std::vector<Group> groups = groups_of(e, "face_");
+    out.attributes.clear();
+    for (const Group& group : groups) out.attributes.push_back({group.name, true, {}});
     out.ends.reserve(e.count), out.corners.reserve(e.count * 3);
+    std::vector<double> values;
     for (row = 0; row < e.count; ++row) {
-      for (const Property& property : e.properties) {
-        if (property.role != indices) {
-          skip(property);
-          continue;
-        }
-        for (size_t n = take_length(property); n > 0; --n)
-          out.corners.push_back(uint32_t(take_integer(property.type, none, "vertex index")));
-      }
+      read_row(e, values, [&](const Property& list) {
+        if (list.role != indices) return skip(list);
+        for (size_t n = take_length(list); n > 0; --n)
+          out.corners.push_back(uint32_t(take_integer(list.type, none, "vertex index")));
+      });
+      for (size_t k = 0; k < groups.size(); ++k) out.attributes[k].values.push_back(value_of(e, groups[k], values));
       out.ends.push_back(out.corners.size());
     }
   }
@@ -330,6 +398,13 @@ Mesh read_body(const Header& header, const char* p, const char* end, const std::
     else
       body.skip_element(e);
   }
+  // vertex_color has its own place
+  if (!mesh.attributes.empty() && mesh.attributes[0].name == "vertex_color") {
+    mesh.colors = std::move(mesh.attributes[0].values);
+    mesh.attributes.erase(mesh.attributes.begin());
+  }
+  const size_t of_faces = mesh.attributes.size();
+  for (const Attribute& a : polygons.attributes) mesh.attributes.push_back({a.name, true, {}});
   mesh.triangles.reserve(polygons.ends.size());
   for (size_t f = 0, begin = 0; f < polygons.ends.size(); begin = polygons.ends[f++]) {
     const std::span corners(polygons.corners.data() + begin, polygons.ends[f] - begin);
@@ -337,6 +412,8 @@ Mesh read_body(const Header& header, const char* p, const char* end, const std::
       if (i >= mesh.positions.size())
         throw Error(fmt::format("{}: face {} names vertex {} of {}", file, f, i, mesh.positions.size()));
     add_polygon(mesh, corners);
+    for (size_t k = 0; k < polygons.attributes.size(); ++k)
+      mesh.attributes[of_faces + k].values.resize(mesh.triangles.size(), polygons.attributes[k].values[f]);
   }
   return mesh;
 }

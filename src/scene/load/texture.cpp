@@ -64,20 +64,19 @@ Texture scaled(Params& p, Colour kind) {
   return t;
 }
 
-// Of the attributes that meshes carry, Ajar keeps the vertices' colours.
 Texture mesh_attribute(Params& p) {
   Texture t;
   t.kind = TextureKind::mesh_attribute;
-  const std::string name = text(p, "name", "");
-  if (name != "vertex_color")
-    unsupported(p.loader, p.node, fmt::format("the mesh attribute \"{}\" is not supported; vertex_color is", name),
-                "vertex_color is taken");
+  t.attribute = text(p, "name", "");
+  if (!t.attribute.starts_with("vertex_") && !t.attribute.starts_with("face_"))
+    fail(p.loader, p.node, "needs a <string name=\"name\" .../> that begins with vertex_ or face_: vertex_color");
   const double scale = number(p, "scale", 1);
   if (scale != 1) {
-    const uint32_t inner = add_texture(p.loader, p.node, std::move(t));
+    Slot inner;
+    inner.texture = add_texture(p.loader, p.node, std::move(t));
     t = {};
     t.kind = TextureKind::scale;
-    t.color0.texture = inner;
+    t.color0 = inner;
     t.color1 = Slot(float(scale));
   }
   finish(p);

@@ -71,7 +71,8 @@ TEST_P(Agree, ReverseIsSwapped) {
     expect_close(forth.pdf_reverse, back.pdf, "pdf", 1e-3f);
     expect_close(forth.pdf, back.pdf_reverse, "pdf_reverse", 1e-3f);
     expect_close(forth.f, back.f, "adjoint", 1e-3f);
-    expect_close(other.f, forth.f * (s.eta * s.eta), "modes", 1e-4f);
+    // between the modes lies more where normals are bent: the cosines of each part (tested with Resolve)
+    if (!GetParam().bent) expect_close(other.f, forth.f * (s.eta * s.eta), "modes", 1e-4f);
     EXPECT_EQ(other.pdf, forth.pdf);
     if (HasFailure())
       FAIL() << "wo " << wo.x << " " << wo.y << " " << wo.z << " wi " << s.wi.x << " " << s.wi.y << " " << s.wi.z;

@@ -32,6 +32,12 @@ Material parent(MaterialKind kind, std::initializer_list<uint32_t> nested) {
   return m;
 }
 
+Material with_normal(const Vec3& n, uint32_t nested) {
+  Material m = parent(MaterialKind::normalmap, {nested});
+  m.map = Slot(glm::normalize(n) * 0.5f + 0.5f);
+  return m;
+}
+
 Material coloured(MaterialKind kind, float alpha = 0.1f) {
   Material m = microfacet(kind, Microfacet::ggx, alpha, alpha);
   m.reflectance = Rgb(0.7f, 0.4f, 0.1f);
@@ -132,6 +138,13 @@ void add_nested(std::vector<Case>& all) {
   blend.nested = {3, 2, none, none};
   all.push_back(
       {"mask_of_blend", {mask, blend, coloured(MaterialKind::roughplastic), material(MaterialKind::null)}, true, true});
+  all.push_back(
+      {"blend_bent",
+       {parent(MaterialKind::blend, {1, 2}), with_normal({0.3f, 0.1f, 1}, 3), with_normal({-0.5f, 0.4f, 1}, 4),
+        coloured(MaterialKind::diffuse), coloured(MaterialKind::roughdielectric, 0.3f)},
+       true,
+       true,
+       true});
   all.push_back({"twosided", {parent(MaterialKind::twosided, {1}), coloured(MaterialKind::diffuse)}});
 }
 
