@@ -101,27 +101,26 @@ void set_orthographic(Camera& c, const Mat4& to_world) {
 
 void set_size(Camera& camera, int width, int height) {
   // half extents of a view of square pixels; shape is what the camera's transform stretches them by
-  const float shape = camera.plane.y * float(camera.width) / (camera.plane.x * float(camera.height));
-  const Vec2 old{camera.plane.x, camera.plane.y / shape};
-  const Vec2 sides{float(width), float(height)};
-  float per_pixel = old.x / sides.x;
+  const double x = camera.plane.x, shape = double(camera.plane.y) * camera.width / (x * camera.height);
+  const double y = camera.plane.y / shape;
+  double per_pixel = x / width;
   switch (camera.axis) {
     case ViewAxis::x:
       break;
     case ViewAxis::y:
-      per_pixel = old.y / sides.y;
+      per_pixel = y / height;
       break;
     case ViewAxis::smaller:
-      per_pixel = std::min(old.x, old.y) / std::min(sides.x, sides.y);
+      per_pixel = std::min(x, y) / std::min(width, height);
       break;
     case ViewAxis::larger:
-      per_pixel = std::max(old.x, old.y) / std::max(sides.x, sides.y);
+      per_pixel = std::max(x, y) / std::max(width, height);
       break;
     case ViewAxis::diagonal:
-      per_pixel = std::sqrt(length2(Vec3(old, 0)) / length2(Vec3(sides, 0)));
+      per_pixel = std::hypot(x, y) / std::hypot(width, height);
       break;
   }
-  camera.plane = {sides.x * per_pixel, sides.y * per_pixel * shape};
+  camera.plane = {float(width * per_pixel), float(height * per_pixel * shape)};
   camera.width = camera.crop_width = width;
   camera.height = camera.crop_height = height;
   camera.crop_x = camera.crop_y = 0;
