@@ -94,6 +94,14 @@ void add_light_of(Scene& scene, LightKind kind) {
       light.direction = Vec3(light.to_world[2]);
       break;
     }
+    case LightKind::projector: {
+      Light& light = scene.lights[add_light(scene, kind, add_checkerboard(scene, Rgb(6, 5, 4), Rgb(0.5f)))];
+      light.position = {0.3f, 0.9f, 0.2f};
+      light.to_world = look_at(light.position, {-0.2f, -1, -0.3f});
+      light.direction = Vec3(light.to_world[2]);
+      light.plane = {0.8f, 0.6f};
+      break;
+    }
   }
 }
 
@@ -296,6 +304,7 @@ std::span<const FeatureScene> feature_scenes() {
       FeatureScene{"area", [] { return lit_by(LightKind::area); }},
       FeatureScene{"point", [] { return lit_by(LightKind::point); }},
       FeatureScene{"spot", [] { return lit_by(LightKind::spot); }},
+      FeatureScene{"projector", [] { return lit_by(LightKind::projector); }},
       FeatureScene{"directional", [] { return lit_by(LightKind::directional); }},
       FeatureScene{"constant", [] { return lit_by(LightKind::constant); }},
       FeatureScene{"envmap", [] { return lit_by(LightKind::envmap); }},

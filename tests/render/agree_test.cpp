@@ -377,6 +377,10 @@ const Feature features[] = {
      [] {
        return lit_by(LightKind::spot, {-0.2f, -1, -0.5f});
      }},
+    {"projector",
+     [] {
+       return lit_by(LightKind::projector, {-0.2f, -1, -0.5f});
+     }},
     {"directional",
      [] {
        return lit_by(LightKind::directional, {-0.4f, -1, -0.6f});

@@ -148,6 +148,10 @@ std::string metal_names();
 std::optional<double> find_dielectric(const std::string& name);
 std::string dielectric_names();
 
+/// Tangent of half the field of view along x that fov, fov_axis or focal_length of a camera or projector say; its width
+/// and height are read, its axis is set.
+double tan_half_x(Params& params, Camera& camera);
+
 // whole elements
 
 uint32_t load_bsdf(Loader& loader, const Node& node);

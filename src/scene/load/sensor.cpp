@@ -88,23 +88,6 @@ double tan_half_view(Params& p, Camera& camera) {
   return film_diagonal / (2 * *focal);
 }
 
-// The same along x.
-double tan_half_x(Params& p, Camera& camera) {
-  const double along = tan_half_view(p, camera), aspect = double(camera.width) / camera.height;
-  switch (camera.axis) {
-    case ViewAxis::y:
-      return along * aspect;
-    case ViewAxis::smaller:
-      return along * std::max(aspect, 1.0);
-    case ViewAxis::larger:
-      return along * std::min(aspect, 1.0);
-    case ViewAxis::diagonal:
-      return along * aspect / std::hypot(aspect, 1.0);
-    default:
-      return along;
-  }
-}
-
 // Splits a camera's transform into scale along its axes and a rigid rest, which may be mirrored.
 DVec3 take_scale(Params& p, DMat4& m) {
   const DVec3 scale{glm::length(DVec3(m[0])), glm::length(DVec3(m[1])), glm::length(DVec3(m[2]))};
@@ -165,6 +148,22 @@ void read_sampler(Loader& loader, const Node& node) {
 }
 
 }  // namespace
+
+double tan_half_x(Params& p, Camera& camera) {
+  const double along = tan_half_view(p, camera), aspect = double(camera.width) / camera.height;
+  switch (camera.axis) {
+    case ViewAxis::y:
+      return along * aspect;
+    case ViewAxis::smaller:
+      return along * std::max(aspect, 1.0);
+    case ViewAxis::larger:
+      return along * std::min(aspect, 1.0);
+    case ViewAxis::diagonal:
+      return along * aspect / std::hypot(aspect, 1.0);
+    default:
+      return along;
+  }
+}
 
 void load_sensor(Loader& loader, const Node& node) {
   Params p(loader, node);

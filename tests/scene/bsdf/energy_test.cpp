@@ -237,6 +237,19 @@ TEST(Plastic, RoughPlasticOfVanishingRoughnessIsPlastic) {
   }
 }
 
+// Without internal reflections what leaves is what enters, once each way (Mitsuba 3's pplastic).
+TEST(Plastic, LostLightIsNotGivenBack) {
+  Material m = white(MaterialKind::roughplastic, Microfacet::beckmann, 1e-3f);
+  m.inner = Inner::lost;
+  m.reflectance = Rgb(0.8f, 0.5f, 0.2f);
+  const Resolved r = resolved({m});
+  for (const float theta : {0.2f, 0.9f, 1.3f}) {
+    const Vec3 wo = direction(theta, 1), wi = direction(0.5f, 3);
+    const float through = (1 - fresnel_dielectric(wo.z, m.ior)) * (1 - fresnel_dielectric(wi.z, m.ior));
+    EXPECT_LT(max_abs(eval(r.bsdf, wo, wi, Mode::radiance).f - m.reflectance.value * (through * inv_pi)), 2e-3f);
+  }
+}
+
 TEST(Phong, IsNormalised) {
   Material m = material(MaterialKind::phong);
   m.reflectance = 0.0f;

@@ -95,6 +95,33 @@ TEST(Emitters, SpotThrowsItsTexture) {
              6, 1e-5);
 }
 
+// A screen across the axis is lit evenly by pi times the irradiance, whose first row is above.
+TEST(Emitters, Projector) {
+  const std::string picture =
+      "<texture name='irradiance' type='checkerboard'><rgb name='color0' value='2 4 6'/>"
+      "<rgb name='color1' value='0'/></texture>";
+  Scene s =
+      load_inside(emitter("projector", picture + "<float name='fov' value='90'/><float name='scale' value='3'/>"));
+  finish(s);
+  EXPECT_RGB(Vec3(s.lights[0].plane, 0), 1, 1, 0, 1e-6);
+  DirectSample d;
+  for (const Vec3& x : {Vec3(0.9f, 0.8f, 1), Vec3(-0.2f, -0.1f, 1)}) {  // left above, right below
+    ASSERT_TRUE(sample_direct(s, 0, x, {0.5f, 0.5f}, d));
+    EXPECT_RGB(d.radiance * -d.wi.z, 6 * pi, 12 * pi, 18 * pi, 1e-3);
+  }
+  for (const Vec3& x : {Vec3(-0.9f, 0.8f, 1), Vec3(1.1f, 0, 1), Vec3(0.5f, 0.5f, -1)})
+    EXPECT_FALSE(sample_direct(s, 0, x, {0.5f, 0.5f}, d));
+  // the picture's shape, turned and moved
+  s = load_inside(emitter("projector", turned + "<float name='fov' value='90'/><string name='fov_axis' value='y'/>"
+                                                "<texture name='irradiance' type='bitmap'><string name='filename' "
+                                                "value='alpha.png'/></texture>"));
+  const Image& image = s.images[0];
+  EXPECT_RGB(Vec3(s.lights[0].plane, 0), double(image.width) / image.height, 1, 0, 1e-6);
+  EXPECT_RGB(s.lights[0].position, 1, 2, 3, 1e-6);
+  EXPECT_RGB(s.lights[0].direction, 1, 0, 0, 1e-6);
+  EXPECT_SAYS(error_of(emitter("projector", "<transform name='to_world'><scale x='2'/></transform>")), "not stretch");
+}
+
 TEST(Emitters, Directional) {
   const Light l =
       read("directional", "<vector name='direction' x='0' y='-2' z='0'/><rgb name='irradiance' value='2'/>");
@@ -106,7 +133,7 @@ TEST(Emitters, Directional) {
 }
 
 TEST(Emitters, UnknownOnes) {
-  for (const char* type : {"sunsky", "sun", "sky", "projector", "collimated", "ies"}) {
+  for (const char* type : {"sunsky", "sun", "sky", "collimated", "ies"}) {
     EXPECT_SAYS(error_of(emitter(type)), "unknown emitter; supported: area, envmap");
     EXPECT_TRUE(load_inside(emitter(type), lenient()).lights.empty());
   }
