@@ -19,6 +19,7 @@ float breadth(const Lobe& lobe) {
   const auto rough = [](float alpha) { return std::clamp((alpha - 0.1f) * 2.5f, 0.0f, 1.0f); };
   switch (lobe.kind) {
     case LobeKind::diffuse:
+    case LobeKind::roughdiffuse:
       return 1;
     case LobeKind::plastic:
       return 1 - lobe.plastic.share;
@@ -28,6 +29,8 @@ float breadth(const Lobe& lobe) {
       return rough(std::min(lobe.roughconductor.facets.alpha_u, lobe.roughconductor.facets.alpha_v));
     case LobeKind::phong:
       return 1 - lobe.phong.share * (1 - rough(std::sqrt(2 / (lobe.phong.exponent + 2))));
+    case LobeKind::ward:
+      return 1 - lobe.ward.share * (1 - rough(std::min(lobe.ward.facets.alpha_u, lobe.ward.facets.alpha_v)));
     case LobeKind::principled:
       return rough(sqr(lobe.principled.roughness));
     default:
@@ -39,7 +42,7 @@ float breadth(const Lobe& lobe) {
 bool turns_through(const Lobe& lobe) {
   const bool trans = lobe.kind == LobeKind::principled && lobe.principled.spec_trans > 0;
   return trans || lobe.kind == LobeKind::dielectric || lobe.kind == LobeKind::thindielectric ||
-         lobe.kind == LobeKind::roughdielectric;
+         lobe.kind == LobeKind::roughdielectric || lobe.kind == LobeKind::difftrans;
 }
 
 // Of what does not pass straight through.

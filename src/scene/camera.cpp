@@ -100,10 +100,30 @@ void set_orthographic(Camera& c, const Mat4& to_world) {
 }
 
 void set_size(Camera& camera, int width, int height) {
+  // half extents of a view of square pixels; shape is what the camera's transform stretches them by
+  const double x = camera.plane.x, shape = double(camera.plane.y) * camera.width / (x * camera.height);
+  const double y = camera.plane.y / shape;
+  double per_pixel = x / width;
+  switch (camera.axis) {
+    case ViewAxis::x:
+      break;
+    case ViewAxis::y:
+      per_pixel = y / height;
+      break;
+    case ViewAxis::smaller:
+      per_pixel = std::min(x, y) / std::min(width, height);
+      break;
+    case ViewAxis::larger:
+      per_pixel = std::max(x, y) / std::max(width, height);
+      break;
+    case ViewAxis::diagonal:
+      per_pixel = std::hypot(x, y) / std::hypot(width, height);
+      break;
+  }
+  camera.plane = {float(width * per_pixel), float(height * per_pixel * shape)};
   camera.width = camera.crop_width = width;
   camera.height = camera.crop_height = height;
   camera.crop_x = camera.crop_y = 0;
-  camera.plane.y = camera.plane.x * float(height) / float(width);
 }
 
 }  // namespace ajar

@@ -136,7 +136,7 @@ void prepare_light(Scene& scene, uint32_t id) {
     if (!light.textured) light.rectangle = rectangle_of(mesh);
   }
   if (light.kind == LightKind::constant || light.kind == LightKind::envmap) scene.infinite_lights.push_back(id);
-  if (light.kind != LightKind::envmap && light.kind != LightKind::spot) return;
+  if (light.kind != LightKind::envmap && light.kind != LightKind::spot && light.kind != LightKind::projector) return;
   const glm::dmat3 linear(light.to_world);
   const double volume = std::abs(glm::determinant(linear));
   light.to_local = Mat3(glm::inverse(linear));

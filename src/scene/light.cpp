@@ -89,7 +89,30 @@ Rgb spot_color(const Scene& scene, const Light& light, const Vec3& w) {
   return eval(scene, light.radiance, at);
 }
 
+// Where unit direction of travel w meets a projector's picture, from (-1, -1) to (1, 1); false outside. cos: to its
+// axis.
+bool on_picture(const Light& light, const Vec3& w, Vec2& at, float& cos) {
+  const Vec3 local = light.to_local * w;
+  cos = local.z;
+  if (!(cos > 0)) return false;
+  at = Vec2(local) / (cos * light.plane);
+  return std::max(std::abs(at.x), std::abs(at.y)) <= 1;
+}
+
+Rgb thrown_picture(const Scene& scene, const Light& light, const Vec3& w) {
+  Vec2 at;
+  float cos;
+  if (!on_picture(light, w, at, cos)) return Rgb(0);
+  Surface surface;
+  surface.uv = 0.5f - 0.5f * at;  // x is to the left and y up, as in a camera
+  return radiance_at(scene, light, surface) / (cos * cos * cos);
+}
+
+// Uniform on the picture.
+float picture_pdf(const Light& light, float cos) { return 1 / (4 * light.plane.x * light.plane.y * cos * cos * cos); }
+
 Rgb delta_intensity(const Scene& scene, const Light& light, const Vec3& w) {
+  if (light.kind == LightKind::projector) return thrown_picture(scene, light, w);
   if (light.kind == LightKind::point) return light.radiance.value;
   const float share = spot_share(light, w);
   return share > 0 ? spot_color(scene, light, w) * share : Rgb(0);
@@ -156,6 +179,10 @@ bool sample_emission_delta(const Scene& scene, uint32_t id, const Vec2& u_direct
   if (light.kind == LightKind::point) {
     out.direction = to_sphere(u_direction);
     out.pdf_direction = sphere_pdf;
+  } else if (light.kind == LightKind::projector) {
+    const Vec3 local = glm::normalize(Vec3((2.0f * u_direction - 1.0f) * light.plane, 1));
+    out.direction = glm::normalize(Mat3(light.to_world) * local);
+    out.pdf_direction = picture_pdf(light, local.z);
   } else {
     const float height = 1 - light.cos_cutoff;
     if (!(height > 0)) return false;
@@ -239,6 +266,11 @@ EmissionPdf pdf_emission(const Scene& scene, const LightPoint& point, const Vec3
       return {1, sphere_pdf};
     case LightKind::spot:
       return {1, glm::dot(light.direction, direction) > light.cos_cutoff ? cone_pdf(1 - light.cos_cutoff) : 0};
+    case LightKind::projector: {
+      Vec2 at;
+      float cos;
+      return {1, on_picture(light, direction, at, cos) ? picture_pdf(light, cos) : 0};
+    }
     default:
       return {disk_pdf(scene), environment_pdf_at(scene, light, -direction)};
   }
@@ -288,6 +320,9 @@ float power(const Scene& scene, uint32_t id) {
       break;
     case LightKind::spot:
       watts = spot_solid_angle(light) * mean_luminance(scene, light.radiance);
+      break;
+    case LightKind::projector:
+      watts = 4.0 * light.plane.x * light.plane.y * mean_luminance(scene, light.radiance);
       break;
   }
   return float(std::clamp(watts, 0.0, double(std::numeric_limits<float>::max())));

@@ -94,6 +94,14 @@ void add_light_of(Scene& scene, LightKind kind) {
       light.direction = Vec3(light.to_world[2]);
       break;
     }
+    case LightKind::projector: {
+      Light& light = scene.lights[add_light(scene, kind, add_checkerboard(scene, Rgb(6, 5, 4), Rgb(0.5f)))];
+      light.position = {0.3f, 0.9f, 0.2f};
+      light.to_world = look_at(light.position, {-0.2f, -1, -0.3f});
+      light.direction = Vec3(light.to_world[2]);
+      light.plane = {0.8f, 0.6f};
+      break;
+    }
   }
 }
 
@@ -278,6 +286,17 @@ Scene with_material(MaterialKind kind, float alpha, int size) {
   return finished(std::move(scene));
 }
 
+// Two normal maps under one blend: a floor and a wall whose parts have normals of their own.
+Scene bent_blend(int size) {
+  Scene scene = lit_room(size);
+  Material blend;
+  blend.kind = MaterialKind::blend;
+  blend.nested = {add_example(scene, MaterialKind::normalmap), add_example(scene, MaterialKind::bumpmap), none, none};
+  const uint32_t id = add_material(scene, blend);
+  for (Shape& shape : std::span(scene.shapes).first(2)) shape.material = id;
+  return finished(std::move(scene));
+}
+
 std::span<const FeatureScene> feature_scenes() {
   using enum MaterialKind;
   static const std::array all{
@@ -285,6 +304,7 @@ std::span<const FeatureScene> feature_scenes() {
       FeatureScene{"area", [] { return lit_by(LightKind::area); }},
       FeatureScene{"point", [] { return lit_by(LightKind::point); }},
       FeatureScene{"spot", [] { return lit_by(LightKind::spot); }},
+      FeatureScene{"projector", [] { return lit_by(LightKind::projector); }},
       FeatureScene{"directional", [] { return lit_by(LightKind::directional); }},
       FeatureScene{"constant", [] { return lit_by(LightKind::constant); }},
       FeatureScene{"envmap", [] { return lit_by(LightKind::envmap); }},
@@ -303,6 +323,10 @@ std::span<const FeatureScene> feature_scenes() {
       FeatureScene{"mixture", [] { return with_material(mixture); }},
       FeatureScene{"bumpmap", [] { return bump_plane(false, 24); }},
       FeatureScene{"normalmap", [] { return bump_plane(true, 24); }},
+      FeatureScene{"bent blend", [] { return bent_blend(24); }},
+      FeatureScene{"roughdiffuse", [] { return with_material(roughdiffuse, 0.6f); }},
+      FeatureScene{"difftrans", [] { return with_material(difftrans); }},
+      FeatureScene{"ward", [] { return with_material(ward, 0.3f); }},
       FeatureScene{"instances", [] { return instanced(false, 24); }},
       FeatureScene{"mirrored instance", [] { return instanced(true, 24); }},
       FeatureScene{"many lights", [] { return many_lights(16, 1, 24); }},

@@ -1,3 +1,5 @@
+#include <span>
+
 #include "ajar/scene/scene.h"
 
 namespace ajar {
@@ -88,13 +90,28 @@ const Slot& checker(const Texture& t, const Vec2& uv) {
   return left == low ? t.color0 : t.color1;
 }
 
-Rgb eval_attribute(const Scene& scene, const Surface& at) {
+// The values of an attribute, none if the mesh lacks it.
+std::span<const Rgb> values_of(const Mesh& mesh, const std::string& name, bool& of_faces) {
+  of_faces = false;
+  if (name == "vertex_color") return mesh.colors;
+  for (const Attribute& a : mesh.attributes)
+    if (a.name == name) {
+      of_faces = a.of_faces;
+      return a.values;
+    }
+  return {};
+}
+
+Rgb eval_attribute(const Scene& scene, const Texture& texture, const Surface& at) {
   const Shape& shape = scene.shapes[at.shape];
   if (shape.kind != ShapeKind::mesh) return Rgb(0);
   const Mesh& mesh = scene.meshes[shape.mesh];
-  if (mesh.colors.empty()) return Rgb(0);
+  bool of_faces;
+  const std::span<const Rgb> values = values_of(mesh, texture.attribute, of_faces);
+  if (values.empty()) return Rgb(0);
+  if (of_faces) return values[at.prim];
   const glm::uvec3 t = mesh.triangles[at.prim];
-  return mesh.colors[t.x] * (1 - at.bary.x - at.bary.y) + mesh.colors[t.y] * at.bary.x + mesh.colors[t.z] * at.bary.y;
+  return values[t.x] * (1 - at.bary.x - at.bary.y) + values[t.y] * at.bary.x + values[t.z] * at.bary.y;
 }
 
 float reduce(const Rgb& c) { return c.x == c.y && c.y == c.z ? c.x : luminance(c); }
@@ -123,12 +140,14 @@ Rgb mean_texel(const Image& image, Channel channel) {
   return sum / (double(image.width) * double(image.height));
 }
 
-Rgb mean_attribute(const Scene& scene) {
+Rgb mean_attribute(const Scene& scene, const Texture& texture) {
   glm::dvec3 sum(0);
   size_t n = 0;
+  bool of_faces;
   for (const Mesh& mesh : scene.meshes) {
-    for (const Rgb& c : mesh.colors) sum += glm::dvec3(c);
-    n += mesh.colors.size();
+    const std::span<const Rgb> values = values_of(mesh, texture.attribute, of_faces);
+    for (const Rgb& c : values) sum += glm::dvec3(c);
+    n += values.size();
   }
   return n > 0 ? Rgb(sum / double(n)) : Rgb(0);
 }
@@ -146,7 +165,7 @@ Rgb eval(const Scene& scene, const Slot& slot, const Surface& at) {
     case TextureKind::scale:
       return eval(scene, t.color0, at) * eval(scene, t.color1, at);
     case TextureKind::mesh_attribute:
-      return eval_attribute(scene, at);
+      return eval_attribute(scene, t, at);
   }
   return Rgb(0);
 }
@@ -181,7 +200,7 @@ Rgb mean(const Scene& scene, const Slot& slot) {
     case TextureKind::scale:
       return mean(scene, t.color0) * mean(scene, t.color1);
     case TextureKind::mesh_attribute:
-      return mean_attribute(scene);
+      return mean_attribute(scene, t);
   }
   return Rgb(0);
 }

@@ -221,6 +221,23 @@ Scene with_blend(MaterialKind kind) {
   return finished(std::move(scene));
 }
 
+// Each part of the blend has a normal map or bump map of its own.
+Scene with_bent_blend() {
+  Scene scene = stage();
+  Material bump = of_kind(MaterialKind::bumpmap), map = of_kind(MaterialKind::normalmap),
+           m = of_kind(MaterialKind::blend);
+  bump.nested[0] = add_diffuse(scene, {0.7f, 0.4f, 0.1f});
+  bump.map = bumps(scene, 0.6f);
+  map.nested[0] = add_material(scene, rough(MaterialKind::roughconductor, Microfacet::ggx, 0.3f, 0.3f));
+  map.map = bumps(scene, 1);
+  m.nested = {add_material(scene, bump), add_material(scene, map), none, none};
+  m.weight = checker(scene, 0.9f, 0.2f);
+  const uint32_t twosided = nest(scene, MaterialKind::twosided, add_material(scene, m));
+  add_mesh(scene, globe({-0.45f, -0.5f, 0}, 0.4f, 12), twosided);
+  add_quad(scene, {0.1f, -0.9f, -0.3f}, {0.7f, 0.1f, 0.4f}, {0, 1, -0.2f}, twosided);
+  return finished(std::move(scene));
+}
+
 Scene with_filter(FilterKind kind) {
   Scene scene = stage();
   scene.filter = make_filter(kind);
@@ -286,6 +303,15 @@ const Feature features[] = {
     {"plastic", [] { return with_sphere(of_kind(MaterialKind::plastic)); }, "pb"},
     {"rough_plastic", [] { return with_rough_sphere(MaterialKind::roughplastic, Microfacet::ggx, 0.3f, 0.3f); }},
     {"phong", [] { return with_sphere(of_kind(MaterialKind::phong)); }},
+    {"rough_diffuse", [] { return with_sphere(of_kind(MaterialKind::roughdiffuse)); }},
+    {"diffuse_transmitter", [] { return with_sphere(of_kind(MaterialKind::difftrans)); }},
+    {"ward",
+     [] {
+       Material m = of_kind(MaterialKind::ward);
+       m.specular = 0.4f, m.alpha_u = 0.2f, m.alpha_v = 0.4f;
+       return with_sphere(m);
+     }},
+    {"bent_blend", with_bent_blend},
     {"principled",
      [] {
        Material m = of_kind(MaterialKind::principled);
@@ -350,6 +376,10 @@ const Feature features[] = {
     {"spot",
      [] {
        return lit_by(LightKind::spot, {-0.2f, -1, -0.5f});
+     }},
+    {"projector",
+     [] {
+       return lit_by(LightKind::projector, {-0.2f, -1, -0.5f});
      }},
     {"directional",
      [] {

@@ -14,14 +14,19 @@ using kit::LitScene;
 
 std::vector<LitScene> delta_scenes() {
   std::vector<LitScene> all;
-  for (const LightKind kind : {LightKind::point, LightKind::spot, LightKind::directional}) {
+  constexpr const char* names[] = {"point", "spot", "directional", "projector"};
+  for (const LightKind kind : {LightKind::point, LightKind::spot, LightKind::directional, LightKind::projector}) {
     Light light;
     light.kind = kind;
     light.position = {3, 1, 2};
     light.direction = glm::normalize(Vec3(1, -2, 0.5f));
     light.radiance = Slot(Rgb(1, 2, 3));
+    if (kind == LightKind::projector) {
+      light.to_world = glm::rotate(Mat4(1), 1.0f, glm::normalize(Vec3(1, 2, 3)));
+      light.plane = {1.5f, 0.4f};
+    }
     light.cos_cutoff = std::cos(0.7f), light.cos_beam = std::cos(0.3f);
-    all.push_back({kind == LightKind::point ? "point" : kind == LightKind::spot ? "spot" : "directional", {}});
+    all.push_back({names[all.size()], {}});
     kit::add_mesh(all.back().scene, kit::rectangle(kit::placed(0, Vec3(2), {1, 2, 3})));
     kit::add_light(all.back().scene, light);
     finish(all.back().scene);

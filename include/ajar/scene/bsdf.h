@@ -20,14 +20,18 @@ struct Bsdf {
   bool has_delta = false;
   bool chooses = false;  ///< sample reads u_lobe
   bool opaque = true;    ///< f is 0 unless both directions are in front
+  bool bent = false;     ///< lobes have normals of their own
   float opacity = 1;  ///< 1 - opacity of the light passes straight through as a delta; weights account for it already
   float pass = 0;     ///< probability of sampling that passage; choice adds up to the rest
   float weights[max_lobes];
   float choice[max_lobes];  ///< probability of sampling each lobe: does not depend on direction, so the same both ways
   Lobe lobes[max_lobes];
+  Vec3 normals[max_lobes];  ///< where bent: each lobe's, unit, in the frame of the directions
 };
 
-/// Value and densities for one pair of directions, smooth (non-delta) part only.
+/// Value and densities for one pair of directions, smooth (non-delta) part only. Of a bent Bsdf f is what makes f times
+/// the cosine at the frame's normal the sum of the lobes' values times the cosines at their normals; the cosine in
+/// question is the one on the side that light comes from: of wi in radiance, of wo in importance.
 struct BsdfEval {
   Rgb f{0};               ///< bsdf [1/sr], without the cosine
   float pdf = 0;          ///< solid-angle density of sampling wi given wo [1/sr]
@@ -47,7 +51,8 @@ struct BsdfSample {
 /// bends the frame, which is surface.frame or a copy of it, as twosided (by the side of ng that wo is on), bump and
 /// normal maps ask; local directions below are in that frame. A bent normal stays on the side of ng but not always on
 /// the viewer's: there an opaque bsdf is 0, from both sides alike, so that f stays the same function for camera and
-/// light paths.
+/// light paths. Where branches of a sum bend it differently the frame is the one before them, and each lobe has its
+/// normal.
 void resolve(const Scene& scene, const Surface& surface, const Vec3& wo, Frame& frame, Bsdf& out);
 
 /// f and both densities; zero for directions that only a delta lobe connects. Local directions, unit, away from the

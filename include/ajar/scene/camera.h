@@ -8,9 +8,13 @@ namespace ajar {
 
 enum class CameraKind : uint8_t { perspective, thinlens, orthographic };
 
+/// Along what the field of view was given; smaller and larger: of the film's sides.
+enum class ViewAxis : uint8_t { x, y, smaller, larger, diagonal };
+
 /// Raster coordinates are in pixels of the full image, (0,0) the upper left corner; x right, y down.
 struct Camera {
   CameraKind kind = CameraKind::perspective;
+  ViewAxis axis = ViewAxis::x;  ///< keeps its extent in set_size
   Mat4 to_world{1};  ///< camera space: looks along +z, y up, x to the *left* in the image (Mitsuba's convention)
   Mat4 to_camera{1};
   int width = 768, height = 576;  ///< full film
@@ -51,7 +55,7 @@ float raster_factor(const Camera& camera, const Vec3& o, const Vec3& x);
 void set_perspective(Camera& camera, float fov_x_degrees, const Mat4& to_world);
 /// The same for an orthographic camera: the image is 2 wide in camera space, so to_world's scale gives its size.
 void set_orthographic(Camera& camera, const Mat4& to_world);
-/// Another size in pixels: the width of the view stays, its height follows, a crop window is dropped.
+/// Another size in pixels: what the view spans along camera.axis stays, the rest follows, a crop window is dropped.
 void set_size(Camera& camera, int width, int height);
 
 }  // namespace ajar

@@ -7,7 +7,7 @@
 
 namespace ajar {
 
-enum class LightKind : uint8_t { area, constant, envmap, point, spot, directional };
+enum class LightKind : uint8_t { area, constant, envmap, point, spot, directional, projector };
 
 /// A mesh light that is one rectangle: corner + a x + b y, 0 <= a, b <= 1, shines to the side of cross(x, y).
 struct Rectangle {
@@ -20,16 +20,18 @@ struct Rectangle {
 struct Light {
   LightKind kind = LightKind::area;
   Slot radiance{1.0f};  ///< area, constant: radiance [W/(m^2 sr)]; directional: irradiance on a perpendicular plane;
-                        ///< point, spot: intensity [W/sr]
+                        ///< point, spot: intensity [W/sr]; projector: the same along its axis, see plane
   float sampling_weight = 1;    ///< the user's factor on the chance of being chosen
   uint32_t shape = none;        ///< area: index into Scene::shapes
   uint32_t environment = none;  ///< envmap: index into Scene::environments
-  Mat4 to_world{1};             ///< envmap, spot: orientation (spot: position too)
+  Mat4 to_world{1};             ///< envmap, spot, projector: orientation (the latter two: position too)
   Mat3 to_local{1};             ///< inverse of to_world's linear part; made by finish
-  Vec3 position{0};             ///< point, spot
+  Vec3 position{0};             ///< point, spot, projector
   Vec3 direction{0, 0, 1};      ///< spot, directional: where the light travels to, unit
   float cos_cutoff = 0;         ///< spot: nothing outside
   float cos_beam = 1;           ///< spot: full intensity inside; between the two it falls linearly with the angle
+  Vec2 plane{1, 1};             ///< projector: half extents of its picture at distance 1, seen as by a Camera; the
+                                ///< intensity rises with cos^-3 from the axis, so that a screen across it is lit evenly
   bool textured = false;        ///< radiance has a texture; made by finish
   Rectangle rectangle;          ///< area: untextured rectangles; made by finish
 };
@@ -44,7 +46,7 @@ struct LightPoint {
   uint32_t light = none;
   uint32_t prim = 0;
   bool infinite = false;
-  bool delta_position = false;   ///< point, spot: a ray cannot hit it
+  bool delta_position = false;   ///< point, spot, projector: a ray cannot hit it
   bool delta_direction = false;  ///< directional: a ray cannot find it
 };
 

@@ -29,6 +29,14 @@ struct alignas(32) PackedTriangle {
   Vec3 ng{0, 0, 1};  ///< unit, by the winding
 };
 
+/// Numbers that a file ties to the vertices or the faces of its mesh: "vertex_wetness", "face_color". Single numbers
+/// are grey.
+struct Attribute {
+  std::string name;
+  bool of_faces = false;    ///< values belong to triangles, not to vertices
+  std::vector<Rgb> values;  ///< as many as the mesh has of them
+};
+
 /// Triangles in world space (in the group's space for shapes of a shapegroup). normals, uvs and colors may be
 /// empty.
 struct Mesh {
@@ -36,7 +44,8 @@ struct Mesh {
   std::vector<Vec3> normals;  ///< unit; empty: face normals
   std::vector<Vec2> uvs;
   std::vector<glm::uvec3> triangles;
-  std::vector<Rgb> colors;            ///< per vertex, for mesh_attribute textures
+  std::vector<Rgb> colors;            ///< per vertex, the attribute vertex_color
+  std::vector<Attribute> attributes;  ///< all others
   std::vector<PackedVertex> packed;   ///< positions, normals and uvs side by side; made by finish
   std::vector<PackedTriangle> faces;  ///< made by finish
   Distribution area;                  ///< over triangles; filled by finish for meshes that emit

@@ -49,7 +49,7 @@ inline Rgb texel(const Image& image, int x, int y, Channel channel = Channel::co
 }
 
 enum class Wrap : uint8_t { repeat, mirror, clamp, zero, one };
-enum class TextureKind : uint8_t { bitmap, checkerboard, scale, mesh_attribute };  ///< mesh_attribute: Mesh::colors
+enum class TextureKind : uint8_t { bitmap, checkerboard, scale, mesh_attribute };
 
 struct Texture {
   TextureKind kind = TextureKind::bitmap;
@@ -61,6 +61,7 @@ struct Texture {
   Mat3 to_uv{1};          ///< applied to (u, v, 1) before the look-up
   Slot color0{0.4f};      ///< checkerboard, where floor(2u) + floor(2v) is even; scale: the nested slot
   Slot color1{0.2f};      ///< checkerboard, elsewhere; scale: the factor
+  std::string attribute;  ///< mesh_attribute: its name; black where the mesh has none of this name
 };
 
 /// Value of a slot at a surface point; linear RGB. Bilinear unless the texture says nearest.

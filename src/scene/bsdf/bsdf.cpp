@@ -6,12 +6,53 @@ namespace ajar {
 namespace {
 
 // One lobe of weight 1, which is what most materials are.
-bool alone(const Bsdf& bsdf) { return bsdf.count == 1 && bsdf.weights[0] == 1 && bsdf.pass == 0; }
+bool alone(const Bsdf& bsdf) { return bsdf.count == 1 && bsdf.weights[0] == 1 && bsdf.pass == 0 && !bsdf.bent; }
+
+// A lobe with a normal of its own: directions in its frame, which have to be on the same sides as in the common one,
+// else light would pass the surface.
+struct Own {
+  Frame frame;
+  float side;
+
+  explicit Own(const Vec3& n) : frame(make_frame(n, Vec3(1, 0, 0))), side(n.z > 0 ? 1.0f : -1.0f) {}
+  bool agrees(const Vec3& w, const Vec3& own) const { return side * w.z * own.z > 0; }
+};
+// Cosine at the lobe's normal over that at the common one; those below 1e-10 are rounding, and would leave the range.
+float cosines(const Vec3& own, const Vec3& w) { return std::abs(own.z) / std::max(std::abs(w.z), 1e-10f); }
+
+BsdfEval eval_lobe(const Bsdf& bsdf, int i, const Vec3& wo, const Vec3& wi, Mode mode) {
+  const auto value = [&](const Vec3& o, const Vec3& in) {
+    return visit(bsdf.lobes[i], [&](const auto& lobe) { return eval(lobe, o, in, mode); });
+  };
+  if (!bsdf.bent) return value(wo, wi);
+  const Own own(bsdf.normals[i]);
+  const Vec3 o = own.frame.to_local(wo), in = own.frame.to_local(wi);
+  if (!own.agrees(wo, o) || !own.agrees(wi, in)) return {};
+  BsdfEval e = value(o, in);
+  e.f *= mode == Mode::radiance ? cosines(in, wi) : cosines(o, wo);  // (A2)
+  return e;
+}
+
+// The weight of a smooth sample is left to the sum.
+bool sample_lobe(const Bsdf& bsdf, int i, const Vec3& wo, float u_lobe, const Vec2& u, Mode mode, BsdfSample& out) {
+  const auto draw = [&](const Vec3& o) {
+    return visit(bsdf.lobes[i], [&](const auto& lobe) { return sample(lobe, o, u_lobe, u, mode, out); });
+  };
+  if (!bsdf.bent) return draw(wo);
+  const Own own(bsdf.normals[i]);
+  const Vec3 o = own.frame.to_local(wo);
+  if (!own.agrees(wo, o) || !draw(o)) return false;
+  const Vec3 in = out.wi;
+  out.wi = in == -o ? -wo : own.frame.to_world(in);
+  if (!own.agrees(out.wi, in)) return false;
+  if (out.delta && mode == Mode::importance) out.weight *= cosines(o, wo) / cosines(in, out.wi);
+  return true;
+}
 
 BsdfEval eval_sum(const Bsdf& bsdf, const Vec3& wo, const Vec3& wi, Mode mode) {
   BsdfEval sum;
   for (int i = 0; i < bsdf.count; ++i) {
-    const BsdfEval e = visit(bsdf.lobes[i], [&](const auto& lobe) { return eval(lobe, wo, wi, mode); });
+    const BsdfEval e = eval_lobe(bsdf, i, wo, wi, mode);
     sum.f += e.f * bsdf.weights[i];
     sum.pdf += e.pdf * bsdf.choice[i];
     sum.pdf_reverse += e.pdf_reverse * bsdf.choice[i];
@@ -30,7 +71,7 @@ bool sample_sum(const Bsdf& bsdf, const Vec3& wo, float u_lobe, const Vec2& u, M
       continue;
     }
     if (!(p > 0)) return false;
-    if (!visit(bsdf.lobes[i], [&](const auto& lobe) { return sample(lobe, wo, u_lobe, u, mode, out); })) return false;
+    if (!sample_lobe(bsdf, i, wo, u_lobe, u, mode, out)) return false;
     if (out.delta) {
       out.weight *= bsdf.weights[i] / p;
       out.pdf *= p;
@@ -61,8 +102,10 @@ bool sample(const Bsdf& bsdf, const Vec3& wo, float u_lobe, const Vec2& u, Mode 
 
 Rgb albedo(const Bsdf& bsdf, const Vec3& wo) {
   Rgb sum(1 - bsdf.opacity);
-  for (int i = 0; i < bsdf.count; ++i)
-    sum += bsdf.weights[i] * visit(bsdf.lobes[i], [&](const auto& lobe) { return albedo(lobe, wo); });
+  for (int i = 0; i < bsdf.count; ++i) {
+    const Vec3 o = bsdf.bent ? Own(bsdf.normals[i]).frame.to_local(wo) : wo;
+    sum += bsdf.weights[i] * visit(bsdf.lobes[i], [&](const auto& lobe) { return albedo(lobe, o); });
+  }
   return sum;
 }
 

@@ -35,10 +35,11 @@ namespace {
 
 constexpr int max_nesting = 64;
 
-// Where the material turns or bends the normal, in order: branches of a sum must agree, for they share one frame.
+// What turns or bends the normal: branches of a sum that turn it alike share one frame.
 struct Outline {
   int lobes = 0;
-  std::vector<uint32_t> bends;
+  bool turns = false, bends = false;
+  bool splits = false;
   std::string problem;
 };
 
@@ -51,27 +52,27 @@ Outline outline_of_branches(const Scene& scene, const Material& m, int depth) {
     if (nested == none) continue;
     const Outline branch = outline_of(scene, nested, depth + 1);
     if (!branch.problem.empty()) return branch;
-    sum.lobes += branch.lobes;
     if (branch.lobes == 0) continue;  // null scatters nothing
-    if (!first && branch.bends != sum.bends)
-      sum.problem =
-          "its nested bsdfs bend or turn the normal differently: put twosided, bumpmap or normalmap around the sum";
-    sum.bends = branch.bends;
+    sum.lobes += branch.lobes;
+    sum.splits |= branch.bends || (!first && branch.turns != sum.turns);
+    sum.turns |= branch.turns;
+    sum.bends |= branch.bends;
     first = false;
   }
+  sum.bends |= sum.splits;  // for the sum that this one may be in
   return sum;
 }
 
 Outline outline_of(const Scene& scene, uint32_t id, int depth) {
-  if (depth > max_nesting) return {0, {}, fmt::format("nested more than {} deep, or inside itself", max_nesting)};
-  if (id >= scene.materials.size()) return {0, {}, "a nested bsdf is missing"};
+  if (depth > max_nesting) return {.problem = fmt::format("nested more than {} deep, or inside itself", max_nesting)};
+  if (id >= scene.materials.size()) return {.problem = "a nested bsdf is missing"};
   const Material& m = scene.materials[id];
   Outline outline;
   switch (m.kind) {
     case MaterialKind::null:
       return outline;
     case MaterialKind::blend:
-      if (m.nested[0] == none || m.nested[1] == none) return {0, {}, "a nested bsdf is missing"};
+      if (m.nested[0] == none || m.nested[1] == none) return {.problem = "a nested bsdf is missing"};
       [[fallthrough]];
     case MaterialKind::mixture:
       return outline_of_branches(scene, m, depth);
@@ -81,14 +82,15 @@ Outline outline_of(const Scene& scene, uint32_t id, int depth) {
       outline = outline_of(scene, m.nested[0], depth + 1);
       const Outline behind = m.nested[1] == none ? Outline{} : outline_of(scene, m.nested[1], depth + 1);
       outline.lobes = std::max(outline.lobes, behind.lobes);
+      outline.bends |= behind.bends;
+      outline.turns = true;
       if (outline.problem.empty()) outline.problem = behind.problem;
-      outline.bends.push_back(uint32_t(MaterialKind::twosided) << 24);
       return outline;
     }
     case MaterialKind::bumpmap:
     case MaterialKind::normalmap:
       outline = outline_of(scene, m.nested[0], depth + 1);
-      outline.bends.push_back(id);
+      outline.bends = true;
       return outline;
     default:
       outline.lobes = 1;
@@ -135,7 +137,7 @@ bool wants_tangents(const Scene& scene, uint32_t material) {
   const Material& m = scene.materials[material];
   if (m.kind == MaterialKind::bumpmap || m.kind == MaterialKind::normalmap) return true;
   if (m.kind == MaterialKind::principled) return m.anisotropic.texture != none || m.anisotropic.value != Rgb(0);
-  if (m.kind == MaterialKind::roughconductor || m.kind == MaterialKind::roughdielectric)
+  if (m.kind == MaterialKind::roughconductor || m.kind == MaterialKind::roughdielectric || m.kind == MaterialKind::ward)
     return m.alpha_u.texture != m.alpha_v.texture || m.alpha_u.value != m.alpha_v.value;
   return std::any_of(m.nested.begin(), m.nested.end(),
                      [&](uint32_t id) { return id != none && wants_tangents(scene, id); });
@@ -146,6 +148,7 @@ void prepare_materials(Scene& scene) {
     if (const std::string problem = material_problem(scene, i); !problem.empty())
       throw Error(fmt::format("bsdf {} of the scene: {}", i, problem));
     Material& m = scene.materials[i];
+    m.splits = outline_of(scene, i, 0).splits;
     m.entering = float(1 - fresnel_diffuse(m.ior));
     if (m.kind != MaterialKind::roughplastic) continue;
     m.entering_table.clear();

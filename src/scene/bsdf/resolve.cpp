@@ -12,6 +12,7 @@ struct Resolver {
   Bsdf& out;
   bool back;            // the viewer is behind ng
   bool turned = false;  // frame.n was turned to the viewer; until the end s and t stay, as in a mirror
+  bool split = false;   // inside a sum whose branches have normals of their own
 };
 
 Rgb look(const Resolver& r, const Slot& slot) {
@@ -60,7 +61,8 @@ Facets facets(const Resolver& r, const Material& m) {
 // Diffuse light that enters, bounces inside under the boundary and leaves: internal reflectance is 1 - entering /
 // eta^2, since a boundary lets the same pass both ways but for the basic solid angle.
 Rgb under_boundary(const Material& m, const Rgb& rho, float entering) {
-  if (!m.nonlinear) return rho / entering;
+  if (m.inner == Inner::lost) return rho;
+  if (m.inner == Inner::linear) return rho / entering;
   return rho / (m.ior * m.ior * (Rgb(1) - rho) + rho * entering);
 }
 float specular_share(const Rgb& specular, const Rgb& diffuse) {
@@ -141,6 +143,24 @@ bool set_lobe(const Resolver& r, const Material& m, Lobe& lobe) {
     case MaterialKind::principled:
       set_principled(r, m, lobe);
       return true;
+    case MaterialKind::roughdiffuse: {
+      // Mitsuba's alpha is the RMS slope in the plane, sqrt(2) times that along one direction.
+      const float variance = 0.5f * sqr(look_scalar(r, m.alpha_u));
+      lobe.kind = LobeKind::roughdiffuse;
+      lobe.roughdiffuse = {look(r, m.reflectance), variance, m.simple};
+      return !is_black(lobe.roughdiffuse.reflectance);
+    }
+    case MaterialKind::difftrans:
+      lobe.kind = LobeKind::difftrans;
+      lobe.difftrans = {look(r, m.transmittance)};
+      return !is_black(lobe.difftrans.transmittance);
+    case MaterialKind::ward: {
+      const Rgb diffuse = look(r, m.reflectance), specular = look(r, m.specular);
+      lobe.kind = LobeKind::ward;
+      lobe.ward = {diffuse, specular, facets(r, m), specular_share(specular, diffuse), m.ward};
+      lobe.ward.facets.kind = Microfacet::beckmann;
+      return true;
+    }
     default:
       lobe.kind = LobeKind::diffuse;
       lobe.diffuse = {look(r, m.reflectance)};
@@ -155,10 +175,13 @@ bool is_delta(LobeKind k) {
 bool is_smooth(LobeKind k) { return !is_delta(k) || k == LobeKind::plastic; }
 // What else than one kind of event: their samples read u_lobe.
 bool is_mixed(LobeKind k) {
-  return k != LobeKind::diffuse && k != LobeKind::conductor && k != LobeKind::roughconductor;
+  return k != LobeKind::diffuse && k != LobeKind::conductor && k != LobeKind::roughconductor &&
+         k != LobeKind::roughdiffuse && k != LobeKind::difftrans;
 }
 // Value and densities, deltas aside, for directions on two sides.
-bool transmits(LobeKind k) { return k == LobeKind::roughdielectric || k == LobeKind::principled; }
+bool transmits(LobeKind k) {
+  return k == LobeKind::roughdielectric || k == LobeKind::principled || k == LobeKind::difftrans;
+}
 
 void add(Resolver& r, uint32_t id, float weight);
 
@@ -170,7 +193,18 @@ void add_leaf(Resolver& r, const Material& m, float weight) {
   out.has_smooth |= is_smooth(kind);
   out.chooses |= is_mixed(kind);
   out.opaque &= !transmits(kind);
+  if (r.split) out.normals[out.count] = r.frame.n;
   out.weights[out.count++] = weight;
+}
+
+// Follows one branch of a sum that splits; the others start from the same frame.
+void add_branch(Resolver& r, uint32_t id, float weight) {
+  const Frame frame = r.frame;
+  const bool turned = r.turned;
+  r.split = true;
+  add(r, id, weight);
+  r.frame = frame;
+  r.turned = turned;
 }
 
 // Follows one nested material; branches recur.
@@ -191,6 +225,10 @@ void add(Resolver& r, uint32_t id, float weight) {
       }
       case MaterialKind::blend: {
         const float second = look_unit(r, m.weight);
+        if (m.splits) {
+          add_branch(r, m.nested[0], weight * (1 - second));
+          return add_branch(r, m.nested[1], weight * second);
+        }
         add(r, m.nested[0], weight * (1 - second));
         weight *= second;
         id = m.nested[1];
@@ -198,7 +236,7 @@ void add(Resolver& r, uint32_t id, float weight) {
       }
       case MaterialKind::mixture:
         for (int i = 0; i < 4; ++i)
-          if (m.nested[i] != none) add(r, m.nested[i], weight * m.weights[i]);
+          if (m.nested[i] != none) (m.splits ? add_branch : add)(r, m.nested[i], weight * m.weights[i]);
         return;
       case MaterialKind::bumpmap:
         bend_by_height(r, m);
@@ -232,17 +270,28 @@ void choose(Bsdf& out) {
   out.has_delta |= out.pass > 0;
 }
 
+// Normals of lobes become local; a lobe that was turned by itself is in front where the rest is behind.
+void settle_normals(const Frame& frame, Bsdf& out) {
+  out.bent = true;
+  for (int i = 0; i < out.count; ++i) {
+    out.normals[i] = frame.to_local(out.normals[i]);
+    out.opaque &= out.normals[i].z > 0;
+  }
+}
+
 }  // namespace
 
 void resolve(const Scene& scene, const Surface& surface, const Vec3& wo, Frame& frame, Bsdf& out) {
   out.count = 0;
   out.has_smooth = out.has_delta = out.chooses = false;
   out.opaque = true;
+  out.bent = false;
   out.opacity = 1;
   out.pass = 0;
   Resolver r{scene, surface, frame, out, glm::dot(wo, surface.ng) < 0};
   add(r, scene.shapes[surface.shape].material, 1);
   if (r.turned) frame.t = -frame.t;
+  if (r.split) settle_normals(frame, out);
   out.choice[0] = 1;
   out.opacity = std::max(out.opacity, 0.0f);
   if (out.count != 1 || out.opacity < 1) choose(out);

@@ -2,6 +2,7 @@
 // Leaves: a call with the lobe's own type.
 #pragma once
 
+#include "matte.h"
 #include "plastic.h"
 #include "principled.h"
 
@@ -30,6 +31,12 @@ auto visit(const Lobe& lobe, Act&& act) {
       return act(lobe.phong);
     case LobeKind::principled:
       return act(lobe.principled);
+    case LobeKind::roughdiffuse:
+      return act(lobe.roughdiffuse);
+    case LobeKind::difftrans:
+      return act(lobe.difftrans);
+    case LobeKind::ward:
+      return act(lobe.ward);
   }
   __builtin_unreachable();
 }

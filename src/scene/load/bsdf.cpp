@@ -65,9 +65,12 @@ void diffuse(Params& p, Material& m) {
 }
 
 void roughdiffuse(Params& p, Material& m) {
-  note(p.loader, p.node, "is rendered as diffuse: its roughness has no effect");
   diffuse(p, m);
+  m.alpha_u = slot(p, {"alpha"}, 0.2f, Colour::ratio);
+  m.simple = boolean(p, "use_fast_approx", false);
 }
+
+void difftrans(Params& p, Material& m) { m.transmittance = main_slot(p, {"transmittance"}, 0.5f, Colour::reflectance); }
 
 void conductor(Params& p, Material& m) {
   m.specular = main_slot(p, {"specular_reflectance"}, 1.0f, Colour::reflectance);
@@ -101,7 +104,7 @@ void plastic(Params& p, Material& m) {
   m.ior = relative_index(p, polypropylene);
   m.reflectance = main_slot(p, {"diffuse_reflectance", "reflectance"}, 0.5f, Colour::reflectance);
   m.specular = slot(p, {"specular_reflectance"}, 1.0f, Colour::reflectance);
-  m.nonlinear = boolean(p, "nonlinear", false);
+  if (boolean(p, "nonlinear", false)) m.inner = Inner::nonlinear;
 }
 
 void roughplastic(Params& p, Material& m) {
@@ -110,16 +113,48 @@ void roughplastic(Params& p, Material& m) {
   m.alpha_u = m.alpha_v = roughness(p, "alpha", 0.1f);
 }
 
-void phong(Params& p, Material& m) {
+// Roughness and colours of roughplastic; what the boundary reflects back inside is lost.
+void pplastic(Params& p, Material& m) {
+  roughplastic(p, m);
+  m.inner = Inner::lost;
+  m.alpha_u = roughness(p, "alpha_u", m.alpha_u);
+  note(p.loader, p.node, "light is not polarised in Ajar: its intensity alone is rendered");
+}
+
+// What unpolarised light makes of it: half of it passes.
+void polarizer(Params& p, Material& m) {
+  m.ior = 1;
+  m.transmittance = product(p, main_slot(p, {"transmittance"}, 1.0f, Colour::reflectance), 0.5f);
+  find(p, {"theta"});
+  find(p, {"polarizing"});
+  note(p.loader, p.node, "light is not polarised in Ajar: half of it passes, at every angle");
+}
+
+// The diffuse and specular colours of phong and ward.
+void two_colours(Params& p, Material& m) {
   m.reflectance = main_slot(p, {"diffuse_reflectance", "reflectance"}, 0.5f, Colour::reflectance);
   m.specular = slot(p, {"specular_reflectance"}, 0.2f, Colour::reflectance);
-  m.exponent = slot(p, {"exponent"}, 30.0f, Colour::ratio);
   if (m.reflectance.texture != none || m.specular.texture != none) return;
   const float sum = max_component(m.reflectance.value + m.specular.value);
   if (sum <= 1) return;
   note(p.loader, p.node, "diffuse and specular reflectance add up to more than 1: both were scaled down");
   m.reflectance.value /= sum;
   m.specular.value /= sum;
+}
+
+void phong(Params& p, Material& m) {
+  two_colours(p, m);
+  m.exponent = slot(p, {"exponent"}, 30.0f, Colour::ratio);
+}
+
+void ward(Params& p, Material& m) {
+  two_colours(p, m);
+  m.alpha_u = m.alpha_v = roughness(p, "alpha", 0.1f);
+  m.alpha_u = roughness(p, "alpha_u", m.alpha_u);
+  m.alpha_v = roughness(p, "alpha_v", m.alpha_v);
+  const std::string variant = choice(p, "variant", "balanced", {"ward", "ward-duer", "balanced"});
+  if (variant == "ward") m.ward = WardKind::ward;
+  if (variant == "ward-duer") m.ward = WardKind::duer;
 }
 
 void principled(Params& p, Material& m) {
@@ -167,6 +202,7 @@ bool transmits(const Scene& scene, uint32_t id) {
     case MaterialKind::dielectric:
     case MaterialKind::roughdielectric:
     case MaterialKind::thindielectric:
+    case MaterialKind::difftrans:
     case MaterialKind::null:
     case MaterialKind::mask:
       return true;
@@ -281,7 +317,11 @@ constexpr Entry entries[] = {{"diffuse", MaterialKind::diffuse, diffuse},
                              {"principled", MaterialKind::principled, principled},
                              {"phong", MaterialKind::phong, phong},
                              {"null", MaterialKind::null, null},
-                             {"roughdiffuse", MaterialKind::diffuse, roughdiffuse}};
+                             {"roughdiffuse", MaterialKind::roughdiffuse, roughdiffuse},
+                             {"difftrans", MaterialKind::difftrans, difftrans},
+                             {"ward", MaterialKind::ward, ward},
+                             {"pplastic", MaterialKind::roughplastic, pplastic},
+                             {"polarizer", MaterialKind::thindielectric, polarizer}};
 
 // With --lenient: what is nested in the unknown bsdf, or grey.
 uint32_t stand_in(Loader& loader, const Node& node) {

@@ -5,7 +5,7 @@
 namespace ajar {
 namespace {
 
-constexpr const char* supported = "supported: area, envmap, constant, point, spot, directional";
+constexpr const char* supported = "supported: area, envmap, constant, point, spot, directional, projector";
 
 DVec3 checked_direction(const Loader& loader, const Node& node, const DVec3& d) {
   const double length = glm::length(d);
@@ -75,6 +75,16 @@ void point(Params& p) {
   add(p.loader, std::move(light));
 }
 
+// The picture that a spot throws is its texture times its intensity.
+void project_texture(Params& p, double cutoff, Light& light) {
+  const Node* node = find(p, {"texture"});
+  if (node == nullptr) return;
+  const Slot picture = slot_of(p.loader, *node, Colour::ratio);
+  if (picture.texture != none && !(cutoff < 90))
+    fail(p.loader, p.node, "with a texture cutoff_angle should be less than 90 degrees");
+  light.radiance = product(p, picture, light.radiance);
+}
+
 void spot(Params& p) {
   Light light = make_light(p, LightKind::spot);
   light.radiance = Slot(colour(p, "intensity", Rgb(1), Colour::emission));
@@ -83,8 +93,7 @@ void spot(Params& p) {
   if (!(beam >= 0 && beam <= cutoff)) fail(p.loader, p.node, "beam_width should be from 0 to cutoff_angle");
   light.cos_cutoff = float(std::cos(glm::radians(cutoff)));
   light.cos_beam = float(std::cos(glm::radians(beam)));
-  if (find(p, {"texture"}) != nullptr)
-    unsupported(p.loader, p.node, "a texture on a spot light is not supported", "left out");
+  project_texture(p, cutoff, light);
   const DMat4 m = regular_to_world(p);
   light.to_world = orientation(m);
   light.to_world[3] = Vec4(Vec3(DVec3(m[3])), 1);
@@ -102,12 +111,37 @@ void directional(Params& p) {
   add(p.loader, std::move(light));
 }
 
+// A picture thrown through a pinhole: the reverse of a perspective camera. Mitsuba's irradiance lacks a factor of pi.
+void projector(Params& p) {
+  Light light = make_light(p, LightKind::projector);
+  const double scale = number(p, "scale", 1);
+  if (scale < 0) fail(p.loader, p.node, "scale should not be negative");
+  const Slot picture = slot(p, {"irradiance"}, 1.0f, Colour::emission);
+  light.radiance = product(p, picture, float(scale * std::numbers::pi));
+  Camera camera;
+  camera.width = camera.height = 1;
+  const Scene& scene = p.loader.scene;
+  if (picture.texture != none && scene.textures[picture.texture].kind == TextureKind::bitmap) {
+    const Image& image = scene.images[scene.textures[picture.texture].image];
+    camera.width = image.width, camera.height = image.height;
+  }
+  const double x = tan_half_x(p, camera);
+  light.plane = Vec2(float(x), float(x * camera.height / camera.width));
+  const DMat4 m = regular_to_world(p);
+  if (!is_similarity(m)) fail(p.loader, p.node, "its to_world should not stretch: turn, move and scale alone");
+  light.to_world = orientation(m);
+  light.to_world[3] = Vec4(Vec3(DVec3(m[3])), 1);
+  light.position = Vec3(DVec3(m[3]));
+  light.direction = Vec3(light.to_world[2]);
+  add(p.loader, std::move(light));
+}
+
 struct Entry {
   const char* type;
   void (*read)(Params&);
 };
-constexpr Entry entries[] = {
-    {"constant", constant}, {"envmap", envmap}, {"point", point}, {"spot", spot}, {"directional", directional}};
+constexpr Entry entries[] = {{"constant", constant}, {"envmap", envmap},           {"point", point},
+                             {"spot", spot},         {"directional", directional}, {"projector", projector}};
 
 }  // namespace
 

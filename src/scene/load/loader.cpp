@@ -23,7 +23,7 @@ void note(Loader& loader, const Node& node, const std::string& text) {
 }
 
 void unsupported(Loader& loader, const Node& node, const std::string& text, const std::string& instead) {
-  if (!loader.lenient) fail(loader, node, text + "; --lenient goes on without it");
+  if (!loader.lenient) fail(loader, node, text + "; with --lenient: " + instead);
   note(loader, node, text + ": " + instead);
 }
 

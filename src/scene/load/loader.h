@@ -118,6 +118,8 @@ void check_texture(Loader& loader, const Node& node);
 Slot slot(Params& params, std::initializer_list<const char*> names, const Slot& otherwise, Colour kind);
 /// The same of an element at hand.
 Slot slot_of(Loader& loader, const Node& node, Colour kind);
+/// Both multiplied; a constant if both are.
+Slot product(Params& params, const Slot& a, const Slot& b);
 /// A parameter that has to be one colour.
 Rgb colour(Params& params, const char* name, const Rgb& otherwise, Colour kind);
 /// Index into Scene::textures; kind says what the numbers in it stand for.
@@ -145,6 +147,10 @@ std::string metal_names();
 /// Index of refraction of a named dielectric.
 std::optional<double> find_dielectric(const std::string& name);
 std::string dielectric_names();
+
+/// Tangent of half the field of view along x that fov, fov_axis or focal_length of a camera or projector say; its width
+/// and height are read, its axis is set.
+double tan_half_x(Params& params, Camera& camera);
 
 // whole elements
 

@@ -62,28 +62,30 @@ void read_film(Loader& loader, const Node& node, Camera& camera) {
   for (const Node* filter : nested(p, "rfilter")) loader.scene.filter = read_filter(loader, *filter);
 }
 
-// Tangent of half the field of view along x, from whatever the file gives.
-double tan_half_x(Params& p, const Camera& camera) {
-  const double aspect = double(camera.width) / camera.height;
-  double tan_half = 0;
-  std::string axis = choice(p, "fov_axis", "x", {"x", "y", "diagonal", "smaller", "larger"});
+ViewAxis view_axis(Params& p) {
+  static constexpr std::pair<const char*, ViewAxis> axes[] = {{"x", ViewAxis::x},
+                                                              {"y", ViewAxis::y},
+                                                              {"smaller", ViewAxis::smaller},
+                                                              {"larger", ViewAxis::larger},
+                                                              {"diagonal", ViewAxis::diagonal}};
+  const std::string word = choice(p, "fov_axis", "x", {"x", "y", "diagonal", "smaller", "larger"});
+  return std::find_if(std::begin(axes), std::end(axes), [&](const auto& a) { return word == a.first; })->second;
+}
+
+// Tangent of half the field of view along camera.axis, from whatever the file gives.
+double tan_half_view(Params& p, Camera& camera) {
+  camera.axis = view_axis(p);
   if (has(p, "fov")) {
     const double fov = number(p, "fov", 0);
     if (!(fov >= 1e-3 && fov <= 179.9)) fail(p.loader, p.node, "fov should be from 0.001 to 179.9 degrees");
-    tan_half = std::tan(glm::radians(fov) / 2);
-  } else {
-    std::string mm = text(p, "focal_length", "50mm");
-    if (mm.ends_with("mm")) mm.resize(mm.size() - 2);
-    const std::optional<double> focal = to_number(mm);
-    if (!focal || !(*focal >= 0.1 && *focal <= 1e6)) fail(p.loader, p.node, "focal_length should be like \"50mm\"");
-    tan_half = film_diagonal / (2 * *focal);
-    axis = "diagonal";
+    return std::tan(glm::radians(fov) / 2);
   }
-  if (axis == "smaller") axis = aspect > 1 ? "y" : "x";
-  if (axis == "larger") axis = aspect > 1 ? "x" : "y";
-  if (axis == "y") return tan_half * aspect;
-  if (axis == "diagonal") return tan_half * aspect / std::hypot(aspect, 1.0);
-  return tan_half;
+  std::string mm = text(p, "focal_length", "50mm");
+  if (mm.ends_with("mm")) mm.resize(mm.size() - 2);
+  const std::optional<double> focal = to_number(mm);
+  if (!focal || !(*focal >= 0.1 && *focal <= 1e6)) fail(p.loader, p.node, "focal_length should be like \"50mm\"");
+  camera.axis = ViewAxis::diagonal;
+  return film_diagonal / (2 * *focal);
 }
 
 // Splits a camera's transform into scale along its axes and a rigid rest, which may be mirrored.
@@ -146,6 +148,22 @@ void read_sampler(Loader& loader, const Node& node) {
 }
 
 }  // namespace
+
+double tan_half_x(Params& p, Camera& camera) {
+  const double along = tan_half_view(p, camera), aspect = double(camera.width) / camera.height;
+  switch (camera.axis) {
+    case ViewAxis::y:
+      return along * aspect;
+    case ViewAxis::smaller:
+      return along * std::max(aspect, 1.0);
+    case ViewAxis::larger:
+      return along * std::min(aspect, 1.0);
+    case ViewAxis::diagonal:
+      return along * aspect / std::hypot(aspect, 1.0);
+    default:
+      return along;
+  }
+}
 
 void load_sensor(Loader& loader, const Node& node) {
   Params p(loader, node);

@@ -185,6 +185,48 @@ uint32_t material_of(Params& p, bool emits) {
   return shared;
 }
 
+// Names of the mesh attributes that a slot shows.
+void list_attributes(const Scene& scene, const Slot& slot, std::set<std::string>& out) {
+  if (slot.texture == none) return;
+  const Texture& t = scene.textures[slot.texture];
+  if (t.kind == TextureKind::mesh_attribute) out.insert(t.attribute);
+  if (t.kind == TextureKind::checkerboard || t.kind == TextureKind::scale)
+    for (const Slot* inner : {&t.color0, &t.color1}) list_attributes(scene, *inner, out);
+}
+void list_attributes(const Scene& scene, uint32_t material, std::set<std::string>& out) {
+  const Material& m = scene.materials[material];
+  for (const Slot* slot : {&m.reflectance, &m.specular, &m.transmittance, &m.alpha_u, &m.alpha_v, &m.exponent,
+                           &m.weight, &m.map, &m.roughness, &m.anisotropic, &m.metallic, &m.spec_trans, &m.spec_tint,
+                           &m.sheen, &m.sheen_tint, &m.clearcoat, &m.clearcoat_gloss, &m.flatness})
+    list_attributes(scene, *slot, out);
+  for (const uint32_t nested : m.nested)
+    if (nested != none) list_attributes(scene, nested, out);
+}
+
+// What the textures of a shape show has to be in its mesh.
+void check_attributes(Loader& loader, const Node& node, const Shape& shape) {
+  const Scene& scene = loader.scene;
+  std::set<std::string> wanted, there;
+  list_attributes(scene, shape.material, wanted);
+  if (shape.light != none) list_attributes(scene, scene.lights[shape.light].radiance, wanted);
+  if (wanted.empty()) return;
+  if (shape.kind == ShapeKind::mesh) {
+    const Mesh& mesh = scene.meshes[shape.mesh];
+    if (!mesh.colors.empty()) there.insert("vertex_color");
+    for (const Attribute& a : mesh.attributes) {
+      there.insert(a.name);
+      if (wanted.contains(a.name) && !std::all_of(a.values.begin(), a.values.end(), is_finite))
+        fail(loader, node, fmt::format("the mesh attribute \"{}\" has values that are not finite", a.name));
+    }
+  }
+  for (const std::string& name : wanted)
+    if (!there.contains(name))
+      unsupported(loader, node,
+                  fmt::format("its textures show the mesh attribute \"{}\", which it lacks; it has {}",
+                              name.substr(0, 80), there.empty() ? "none" : fmt::format("{}", fmt::join(there, ", "))),
+                  "black in its place");
+}
+
 void refuse_media(Params& p) {
   for (const Node* medium : nested(p, "medium"))
     unsupported(p.loader, *medium, fmt::format("participating media are not supported (shape at line {})", p.node.line),
@@ -256,6 +298,7 @@ void load_shape(Loader& loader, const Node& node, uint32_t group) {
   }
   loader.scene.shapes.push_back(std::move(shape));
   if (!emitters.empty()) load_emitter(loader, *emitters.front(), uint32_t(loader.scene.shapes.size() - 1));
+  check_attributes(loader, node, loader.scene.shapes.back());
 }
 
 }  // namespace ajar

@@ -142,6 +142,8 @@ void split_sharp_edges(Mesh& mesh, float max_angle) {
 
   Mesh out;
   out.triangles.resize(mesh.triangles.size());
+  for (const Attribute& a : mesh.attributes)
+    out.attributes.push_back({a.name, a.of_faces, a.of_faces ? a.values : std::vector<Rgb>()});
   for (size_t i = 0; i < corners.size(); ++i) {
     const auto [fan, vertex, corner] = corners[i];
     if (i == 0 || corners[i - 1].vertex != vertex || corners[i - 1].fan != fan) {
@@ -150,6 +152,8 @@ void split_sharp_edges(Mesh& mesh, float max_angle) {
       out.normals.push_back(length > cancelled ? Vec3(sums[fan] / length) : Vec3(0));
       if (!mesh.uvs.empty()) out.uvs.push_back(mesh.uvs[vertex]);
       if (!mesh.colors.empty()) out.colors.push_back(mesh.colors[vertex]);
+      for (size_t k = 0; k < mesh.attributes.size(); ++k)
+        if (!mesh.attributes[k].of_faces) out.attributes[k].values.push_back(mesh.attributes[k].values[vertex]);
     }
     out.triangles[corner / 3][int(corner % 3)] = uint32_t(out.positions.size() - 1);
   }

@@ -134,7 +134,10 @@ Rgb plugin_spectrum(Loader& loader, const Node& node, Colour kind) {
   Params p(loader, node);
   const Open open(loader, node);
   Rgb c(0);
-  if (node.type == "uniform" || node.type == "rawconstant") {
+  const Node* value = find(p, {"value"});
+  if (node.type == "rawconstant" && value != nullptr && value->tag == "vector") {
+    c = Rgb(vector_of(loader, *value, 0));
+  } else if (node.type == "uniform" || node.type == "rawconstant") {
     c = colour(p, "value", Rgb(1), kind);
   } else if (node.type == "d65") {
     c = colour(p, "color", Rgb(1), kind) * float(number(p, "scale", 1));

@@ -64,20 +64,19 @@ Texture scaled(Params& p, Colour kind) {
   return t;
 }
 
-// Of the attributes that meshes carry, Ajar keeps the vertices' colours.
 Texture mesh_attribute(Params& p) {
   Texture t;
   t.kind = TextureKind::mesh_attribute;
-  const std::string name = text(p, "name", "");
-  if (name != "vertex_color")
-    unsupported(p.loader, p.node, fmt::format("the mesh attribute \"{}\" is not supported; vertex_color is", name),
-                "vertex_color is taken");
+  t.attribute = text(p, "name", "");
+  if (!t.attribute.starts_with("vertex_") && !t.attribute.starts_with("face_"))
+    fail(p.loader, p.node, "needs a <string name=\"name\" .../> that begins with vertex_ or face_: vertex_color");
   const double scale = number(p, "scale", 1);
   if (scale != 1) {
-    const uint32_t inner = add_texture(p.loader, p.node, std::move(t));
+    Slot inner;
+    inner.texture = add_texture(p.loader, p.node, std::move(t));
     t = {};
     t.kind = TextureKind::scale;
-    t.color0.texture = inner;
+    t.color0 = inner;
     t.color1 = Slot(float(scale));
   }
   finish(p);
@@ -179,6 +178,16 @@ uint32_t load_texture(Loader& loader, const Node& node, Colour kind) {
 Slot slot(Params& params, std::initializer_list<const char*> names, const Slot& otherwise, Colour kind) {
   const Node* node = find(params, names);
   return node == nullptr ? otherwise : slot_of(params.loader, *node, kind);
+}
+
+Slot product(Params& params, const Slot& a, const Slot& b) {
+  if (a.texture == none && b.texture == none) return a.value * b.value;
+  Texture t;
+  t.kind = TextureKind::scale;
+  t.color0 = a, t.color1 = b;
+  Slot s;
+  s.texture = add_texture(params.loader, params.node, std::move(t));
+  return s;
 }
 
 Slot slot_of(Loader& loader, const Node& node, Colour kind) {

@@ -71,7 +71,8 @@ TEST_P(Agree, ReverseIsSwapped) {
     expect_close(forth.pdf_reverse, back.pdf, "pdf", 1e-3f);
     expect_close(forth.pdf, back.pdf_reverse, "pdf_reverse", 1e-3f);
     expect_close(forth.f, back.f, "adjoint", 1e-3f);
-    expect_close(other.f, forth.f * (s.eta * s.eta), "modes", 1e-4f);
+    // between the modes lies more where normals are bent: the cosines of each part (tested with Resolve)
+    if (!GetParam().bent) expect_close(other.f, forth.f * (s.eta * s.eta), "modes", 1e-4f);
     EXPECT_EQ(other.pdf, forth.pdf);
     if (HasFailure())
       FAIL() << "wo " << wo.x << " " << wo.y << " " << wo.z << " wi " << s.wi.x << " " << s.wi.y << " " << s.wi.z;
@@ -125,7 +126,9 @@ Vec3 odd_direction(Sampler& sampler) {
 void set_oddly(Material& m, Sampler& sampler) {
   const auto any = [&] { return Slot(pick(sampler, {0, 1e-6f, 0.2f, 0.9f, 1})); };
   const auto colour = [&] { return Slot(Rgb(any().value.x, any().value.x, any().value.x)); };
-  m.nonlinear = sampler.next1() < 0.5f;
+  m.inner = Inner(int(sampler.next1() * 3));
+  m.ward = WardKind(int(sampler.next1() * 3));
+  m.simple = sampler.next1() < 0.5f;
   for (Slot* slot : {&m.reflectance, &m.specular, &m.transmittance}) *slot = colour();
   m.alpha_u = pick(sampler, {0, 1e-5f, 1e-3f, 0.1f, 1, 10});
   m.alpha_v = sampler.next1() < 0.5f ? m.alpha_u : Slot(pick(sampler, {0, 1e-3f, 0.1f, 3}));

@@ -32,6 +32,12 @@ Material parent(MaterialKind kind, std::initializer_list<uint32_t> nested) {
   return m;
 }
 
+Material with_normal(const Vec3& n, uint32_t nested) {
+  Material m = parent(MaterialKind::normalmap, {nested});
+  m.map = Slot(glm::normalize(n) * 0.5f + 0.5f);
+  return m;
+}
+
 Material coloured(MaterialKind kind, float alpha = 0.1f) {
   Material m = microfacet(kind, Microfacet::ggx, alpha, alpha);
   m.reflectance = Rgb(0.7f, 0.4f, 0.1f);
@@ -90,6 +96,30 @@ void add_principled(std::vector<Case>& all) {
   all.push_back({"principled_bubble", {all_of_it}, true, true});
 }
 
+void add_matte(std::vector<Case>& all) {
+  for (const bool simple : {false, true})
+    for (const float alpha : {0.3f, 1.0f}) {
+      Material grooves = coloured(MaterialKind::roughdiffuse, alpha);
+      grooves.simple = simple;
+      all.push_back({fmt::format("roughdiffuse_{}_{:.0f}", simple ? "simple" : "full", 100 * alpha), {grooves}});
+    }
+  all.push_back({"difftrans", {coloured(MaterialKind::difftrans)}, true, true});
+  for (const auto& [kind, name] :
+       {std::pair(WardKind::ward, "ward"), {WardKind::duer, "duer"}, {WardKind::balanced, "balanced"}})
+    for (const auto& [u, v] : {std::pair(0.02f, 0.02f), {0.1f, 0.4f}}) {
+      Material ward = coloured(MaterialKind::ward);
+      ward.ward = kind;
+      ward.alpha_u = u;
+      ward.alpha_v = v;
+      ward.specular = 0.3f;
+      ward.reflectance = Rgb(0.4f, 0.5f, 0.2f);
+      all.push_back({fmt::format("ward_{}_{:.0f}x{:.0f}", name, 100 * u, 100 * v), {ward}});
+    }
+  Material lost = coloured(MaterialKind::roughplastic);
+  lost.inner = Inner::lost;
+  all.push_back({"roughplastic_lost", {lost}});
+}
+
 void add_nested(std::vector<Case>& all) {
   Material mask = parent(MaterialKind::mask, {1});
   mask.weight = 0.7f;
@@ -108,6 +138,13 @@ void add_nested(std::vector<Case>& all) {
   blend.nested = {3, 2, none, none};
   all.push_back(
       {"mask_of_blend", {mask, blend, coloured(MaterialKind::roughplastic), material(MaterialKind::null)}, true, true});
+  all.push_back(
+      {"blend_bent",
+       {parent(MaterialKind::blend, {1, 2}), with_normal({0.3f, 0.1f, 1}, 3), with_normal({-0.5f, 0.4f, 1}, 4),
+        coloured(MaterialKind::diffuse), coloured(MaterialKind::roughdielectric, 0.3f)},
+       true,
+       true,
+       true});
   all.push_back({"twosided", {parent(MaterialKind::twosided, {1}), coloured(MaterialKind::diffuse)}});
 }
 
@@ -126,7 +163,7 @@ std::vector<Case> cases() {
   all.push_back({"thindielectric", {coloured(MaterialKind::thindielectric)}, true, true});
   all.push_back({"plastic", {coloured(MaterialKind::plastic)}});
   Material nonlinear = coloured(MaterialKind::plastic);
-  nonlinear.nonlinear = true;
+  nonlinear.inner = Inner::nonlinear;
   all.push_back({"plastic_nonlinear", {nonlinear}});
   add_microfacets(all, MaterialKind::roughplastic, "roughplastic", false);
   nonlinear.kind = MaterialKind::roughplastic;
@@ -139,6 +176,7 @@ std::vector<Case> cases() {
     all.push_back({fmt::format("phong_{}", int(n)), {phong}});
   }
   add_principled(all);
+  add_matte(all);
   all.push_back({"null", {material(MaterialKind::null)}, true, true});
   add_nested(all);
   return all;

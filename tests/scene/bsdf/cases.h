@@ -18,6 +18,7 @@ struct Case {
   std::vector<Material> materials;
   bool transmits = false;  ///< scatters to the other side
   bool behind = false;     ///< does something when seen from behind
+  bool bent = false;       ///< its parts have normals of their own
 };
 
 inline std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }

@@ -33,12 +33,19 @@ constexpr float angles[] = {0.0f, 0.5f, 1.0f, 1.3f, 1.5f};
 
 class Energy : public testing::TestWithParam<Case> {};
 
+// What a white material may give of 1. Some models are fits, which overshoot.
+float most(const Material& m) {
+  const bool fit = m.kind == MaterialKind::roughdiffuse || (m.kind == MaterialKind::ward && m.ward == WardKind::duer);
+  return m.kind == MaterialKind::principled ? 1.3f : fit ? 1.05f : 1.006f;
+}
+
 // Nothing gives more than it gets, even in white. Importance: radiance is compressed by refraction.
 TEST_P(Energy, WhiteFurnaceIsNotBrighter) {
+  if (GetParam().bent) return;  // the adjoint of a bent normal gives more where the others graze
   std::vector<Material> materials = GetParam().materials;
   for (Material& m : materials) {
     m.reflectance = m.specular = m.transmittance = 1.0f;
-    if (m.kind == MaterialKind::phong) m.reflectance = m.specular = 0.5f;
+    if (m.kind == MaterialKind::phong || m.kind == MaterialKind::ward) m.reflectance = m.specular = 0.5f;
     m.sheen = 0.0f;  // sheen, clearcoat and retro-reflection of the principled model add energy by design
     m.clearcoat = 0.0f;
     m.flatness = 0.0f;
@@ -51,8 +58,7 @@ TEST_P(Energy, WhiteFurnaceIsNotBrighter) {
       Vec3 wo = direction(theta, 0.3f);
       wo.z *= z;
       const Furnace f = furnace(r.bsdf, wo, Mode::importance);
-      const bool principled = materials[0].kind == MaterialKind::principled;
-      EXPECT_LE(max_component(f.all), principled ? 1.3f : 1.006f) << theta;
+      EXPECT_LE(max_component(f.all), most(materials[0])) << theta;
       if (z > 0 && theta < 1) {
         EXPECT_GT(max_component(f.all), 0.2f) << theta;
       }
@@ -195,7 +201,7 @@ TEST(Plastic, AlbedoIsSpecularPlusTransmittedDiffuse) {
   for (const bool nonlinear : {false, true})
     for (const float theta : angles) {
       Material m = white(MaterialKind::plastic);
-      m.nonlinear = nonlinear;
+      m.inner = nonlinear ? Inner::nonlinear : Inner::linear;
       m.reflectance = Rgb(0.8f, 0.5f, 0.2f);
       m.specular = 0.7f;
       const Resolved r = resolved({m});
@@ -215,7 +221,7 @@ TEST(Plastic, AlbedoIsSpecularPlusTransmittedDiffuse) {
 TEST(Plastic, RoughPlasticOfVanishingRoughnessIsPlastic) {
   for (const bool nonlinear : {false, true}) {
     Material m = white(MaterialKind::roughplastic, Microfacet::beckmann, 1e-3f);
-    m.nonlinear = nonlinear;
+    m.inner = nonlinear ? Inner::nonlinear : Inner::linear;
     m.reflectance = Rgb(0.8f, 0.5f, 0.2f);
     const Resolved rough = resolved({m});
     m.kind = MaterialKind::plastic;
@@ -231,6 +237,19 @@ TEST(Plastic, RoughPlasticOfVanishingRoughnessIsPlastic) {
   }
 }
 
+// Without internal reflections what leaves is what enters, once each way (Mitsuba 3's pplastic).
+TEST(Plastic, LostLightIsNotGivenBack) {
+  Material m = white(MaterialKind::roughplastic, Microfacet::beckmann, 1e-3f);
+  m.inner = Inner::lost;
+  m.reflectance = Rgb(0.8f, 0.5f, 0.2f);
+  const Resolved r = resolved({m});
+  for (const float theta : {0.2f, 0.9f, 1.3f}) {
+    const Vec3 wo = direction(theta, 1), wi = direction(0.5f, 3);
+    const float through = (1 - fresnel_dielectric(wo.z, m.ior)) * (1 - fresnel_dielectric(wi.z, m.ior));
+    EXPECT_LT(max_abs(eval(r.bsdf, wo, wi, Mode::radiance).f - m.reflectance.value * (through * inv_pi)), 2e-3f);
+  }
+}
+
 TEST(Phong, IsNormalised) {
   Material m = material(MaterialKind::phong);
   m.reflectance = 0.0f;
@@ -240,6 +259,61 @@ TEST(Phong, IsNormalised) {
     const Resolved r = resolved({m});
     EXPECT_NEAR(furnace(r.bsdf, {0, 0, 1}, Mode::radiance).all.x, 1, 2e-3f) << n;
     EXPECT_NEAR(eval(r.bsdf, {0, 0, 1}, {0, 0, 1}, Mode::radiance).f.x, (n + 2) * inv_pi / 2, 1e-4f * n);
+  }
+}
+
+// The formulas of Oren and Nayar 1994, equations 26 to 30, word by word in angles.
+double oren_nayar(double rho, double variance, double theta_o, double theta_i, double phi, bool simple) {
+  const double steep = std::max(theta_o, theta_i), low = std::min(theta_o, theta_i), p = std::numbers::pi;
+  const double c1 = 1 - 0.5 * variance / (variance + 0.33), v = variance / (variance + 0.09);
+  if (simple) return rho / p * (c1 + 0.45 * v * std::max(std::cos(phi), 0.0) * std::sin(steep) * std::tan(low));
+  const double c2 = 0.45 * v * (std::sin(steep) - (std::cos(phi) >= 0 ? 0 : std::pow(2 * low / p, 3)));
+  const double c3 = 0.125 * v * std::pow(4 * steep * low / (p * p), 2);
+  const double once =
+      c1 + std::cos(phi) * c2 * std::tan(low) + (1 - std::abs(std::cos(phi))) * c3 * std::tan((steep + low) / 2);
+  const double twice = 0.17 * variance / (variance + 0.13) * (1 - std::cos(phi) * std::pow(2 * low / p, 2));
+  return rho / p * once + rho * rho / p * twice;
+}
+
+TEST(RoughDiffuse, IsOrenNayar) {
+  for (const bool simple : {false, true})
+    for (const float alpha : {0.0f, 0.2f, 0.7f}) {
+      Material m = white(MaterialKind::roughdiffuse, Microfacet::beckmann, alpha);
+      m.simple = simple;
+      m.reflectance = Rgb(0.9f, 0.5f, 0.1f);
+      const Resolved r = resolved({m});
+      for (const float theta_o : {0.0f, 0.4f, 1.4f})
+        for (const float theta_i : {0.1f, 0.9f, 1.5f})
+          for (const float phi : {0.0f, 1.0f, 2.0f, pi}) {
+            const Rgb f = eval(r.bsdf, direction(theta_o, 0.3f), direction(theta_i, 0.3f + phi), Mode::radiance).f;
+            for (int c = 0; c < 3; ++c)  // alpha is sqrt(2) times the slope along one direction
+              EXPECT_NEAR(f[c],
+                          oren_nayar(m.reflectance.value[c], 0.5 * std::max(alpha, 1e-4f) * std::max(alpha, 1e-4f),
+                                     theta_o, theta_i, phi, simple),
+                          2e-5)
+                  << simple << " " << alpha << " " << theta_o << " " << theta_i << " " << phi;
+          }
+    }
+}
+
+// All kinds agree at the normal, and there a narrow lobe returns what it says.
+TEST(Ward, IsNormalised) {
+  for (const WardKind kind : {WardKind::ward, WardKind::duer, WardKind::balanced}) {
+    Material m = microfacet(MaterialKind::ward, Microfacet::beckmann, 0.05f, 0.03f);
+    m.reflectance = 0.0f;
+    m.specular = 1.0f;
+    m.ward = kind;
+    const Resolved r = resolved({m});
+    EXPECT_NEAR(eval(r.bsdf, {0, 0, 1}, {0, 0, 1}, Mode::radiance).f.x, inv_pi / (4 * 0.05f * 0.03f), 0.01f);
+    EXPECT_NEAR(furnace(r.bsdf, {0, 0, 1}, Mode::radiance).all.x, 1, 1e-2f);
+    // Ward 1992, equation 5a, in angles of the half vector
+    const Vec3 wo = direction(0.6f, 0), wi = direction(0.58f, pi + 0.05f), h = glm::normalize(wo + wi);
+    const float tan2 = sqr(h.x / h.z / 0.05f) + sqr(h.y / h.z / 0.03f), c = wo.z * wi.z;
+    const float lobe = std::exp(-tan2) * inv_pi / (4 * 0.05f * 0.03f);
+    const float expected = kind == WardKind::ward   ? lobe / std::sqrt(c)
+                           : kind == WardKind::duer ? lobe / c
+                                                    : lobe / (sqr(glm::dot(wo, h)) * sqr(sqr(h.z)));
+    EXPECT_NEAR(eval(r.bsdf, wo, wi, Mode::radiance).f.x, expected, 1e-3f * expected) << int(kind);
   }
 }
 

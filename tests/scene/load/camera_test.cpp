@@ -1,4 +1,5 @@
 // Sensor, film, filter, sampler, integrator.
+#include "ajar/scene/camera.h"
 #include "scene_text.h"
 
 namespace ajar {
@@ -40,6 +41,25 @@ TEST(Sensors, FieldOfView) {
   EXPECT_NEAR(c.plane.x / c.plane.y, 4.0 / 3, 1e-6);
 }
 
+// Another size shows what the file would show if it named that size.
+TEST(Sensors, AnotherSizeKeepsTheAxis) {
+  const std::string stretched = "<transform name='to_world'><scale x='1' y='2' z='1'/></transform>";
+  for (const char* axis : {"x", "y", "smaller", "larger", "diagonal"})
+    for (const auto& [w, h] : {std::pair(300, 300), {500, 200}, {100, 400}})
+      for (const std::string& inside : {fov(50, axis), fov(50, axis) + stretched, std::string()}) {
+        Camera c = read(film(400, 300) + inside).camera;
+        set_size(c, w, h);
+        const Camera named = read(film(w, h) + inside).camera;
+        EXPECT_NEAR(c.plane.x, named.plane.x, 1e-5f * named.plane.x) << axis << " " << w << "x" << h;
+        EXPECT_NEAR(c.plane.y, named.plane.y, 1e-5f * named.plane.y) << axis << " " << w << "x" << h;
+        EXPECT_EQ(c.width, w);
+        EXPECT_EQ(c.crop_height, h);
+      }
+  Camera flat = read(film(400, 300), "orthographic").camera;
+  set_size(flat, 200, 300);
+  EXPECT_RGB(Vec3(flat.plane, 0), 1, 1.5, 0, 1e-6);
+}
+
 TEST(Sensors, FocalLength) {  // a 35 mm film: 36 x 24, diagonal 43.27 mm
   EXPECT_NEAR(fov_x(read(film(360, 240) + "<string name='focalLength' value='50mm'/>")), 39.5978, 1e-3);
   EXPECT_NEAR(fov_x(read(film(360, 240))), 39.5978, 1e-3);
@@ -77,10 +97,11 @@ TEST(Sensors, ScaleIsFoldedIntoTheView) {
 }
 
 TEST(Sensors, Orthographic) {
-  const Camera c =
-      read(film(200, 100) + "<transform name='to_world'><scale x='10' y='10'/><translate z='-5'/></transform><float name='near_clip' value='0'/>",
-           "orthographic")
-          .camera;
+  const Camera c = read(film(200, 100) +
+                            "<transform name='to_world'><scale x='10' y='10'/><translate z='-5'/></transform><float "
+                            "name='near_clip' value='0'/>",
+                        "orthographic")
+                       .camera;
   EXPECT_EQ(c.kind, CameraKind::orthographic);
   EXPECT_NEAR(c.plane.x, 10, 1e-5);
   EXPECT_NEAR(c.plane.y, 5, 1e-5);

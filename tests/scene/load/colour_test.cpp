@@ -114,6 +114,7 @@ TEST(Colour, SpectrumPlugins) {
   EXPECT_RGB(reflectance(plugin("uniform", "<float name='value' value='.3'/>")), 0.3, 0.3, 0.3, 1e-6);
   EXPECT_RGB(reflectance(plugin("srgb", "<rgb name='color' value='.1 .2 .3'/>")), 0.1, 0.2, 0.3, 1e-6);
   EXPECT_RGB(reflectance(plugin("rawconstant", "<rgb name='value' value='.1 .2 .3'/>")), 0.1, 0.2, 0.3, 1e-6);
+  EXPECT_RGB(reflectance(plugin("rawconstant", "<vector name='value' x='.1' y='.2' z='.3'/>")), 0.1, 0.2, 0.3, 1e-6);
   EXPECT_RGB(reflectance(plugin("d65", "<float name='scale' value='.5'/>")), 0.5, 0.5, 0.5, 1e-6);
   EXPECT_RGB(reflectance(plugin("irregular",
                                 "<string name='wavelengths' value='300, 900'/>"

@@ -67,9 +67,59 @@ TEST(Emitters, Spot) {
   EXPECT_EQ(l.cos_beam, 1);
   EXPECT_SAYS(error_of(emitter("spot", "<float name='cutoff_angle' value='0'/>")), "cutoff_angle");
   EXPECT_SAYS(error_of(emitter("spot", "<float name='beam_width' value='30'/>")), "beam_width");
-  const std::string textured = emitter("spot", "<texture name='texture' type='checkerboard'/>");
-  EXPECT_SAYS(error_of(textured), "texture on a spot light");
-  EXPECT_EQ(load_inside(textured, lenient()).lights.size(), 1u);
+}
+
+// The square around the cone, u along x and v along y of the light's own space (Mitsuba's spot).
+TEST(Emitters, SpotThrowsItsTexture) {
+  const std::string picture =
+      "<texture name='texture' type='checkerboard'><rgb name='color0' value='3'/><rgb name='color1' value='0'/>"
+      "<transform name='to_uv'><scale value='0.5'/></transform></texture>";
+  const std::string inside = picture +
+                             "<rgb name='intensity' value='2 4 6'/><float name='cutoff_angle' value='45'/>"
+                             "<float name='beam_width' value='44'/>";
+  Scene s = load_inside(emitter("spot", inside));
+  finish(s);
+  DirectSample d;
+  // to_uv halves: the board has one square on the whole picture
+  ASSERT_TRUE(sample_direct(s, 0, {0.3f, 0.4f, 2}, {0.5f, 0.5f}, d));
+  EXPECT_RGB(d.radiance * sqr(d.distance), 6, 12, 18, 1e-4);
+  s = load_inside(emitter("spot", inside + "<transform name='to_world'><rotate y='1' angle='90'/></transform>"));
+  finish(s);
+  s.textures[s.textures[s.lights[0].radiance.texture].color0.texture].to_uv = Mat3(1);
+  // x of the light is -z of the world: u > 1/2 and v < 1/2 make the second colour
+  EXPECT_FALSE(sample_direct(s, 0, {2, -0.4f, -0.3f}, {0.5f, 0.5f}, d));
+  EXPECT_TRUE(sample_direct(s, 0, {2, 0.4f, -0.3f}, {0.5f, 0.5f}, d));
+  EXPECT_FALSE(sample_direct(s, 0, {2, 0.4f, 0.3f}, {0.5f, 0.5f}, d));
+  EXPECT_SAYS(error_of(emitter("spot", picture + "<float name='cutoff_angle' value='100'/>")), "less than 90");
+  EXPECT_RGB(read("spot", "<rgb name='texture' value='1 2 3'/><rgb name='intensity' value='2'/>").radiance.value, 2, 4,
+             6, 1e-5);
+}
+
+// A screen across the axis is lit evenly by pi times the irradiance, whose first row is above.
+TEST(Emitters, Projector) {
+  const std::string picture =
+      "<texture name='irradiance' type='checkerboard'><rgb name='color0' value='2 4 6'/>"
+      "<rgb name='color1' value='0'/></texture>";
+  Scene s =
+      load_inside(emitter("projector", picture + "<float name='fov' value='90'/><float name='scale' value='3'/>"));
+  finish(s);
+  EXPECT_RGB(Vec3(s.lights[0].plane, 0), 1, 1, 0, 1e-6);
+  DirectSample d;
+  for (const Vec3& x : {Vec3(0.9f, 0.8f, 1), Vec3(-0.2f, -0.1f, 1)}) {  // left above, right below
+    ASSERT_TRUE(sample_direct(s, 0, x, {0.5f, 0.5f}, d));
+    EXPECT_RGB(d.radiance * -d.wi.z, 6 * pi, 12 * pi, 18 * pi, 1e-3);
+  }
+  for (const Vec3& x : {Vec3(-0.9f, 0.8f, 1), Vec3(1.1f, 0, 1), Vec3(0.5f, 0.5f, -1)})
+    EXPECT_FALSE(sample_direct(s, 0, x, {0.5f, 0.5f}, d));
+  // the picture's shape, turned and moved
+  s = load_inside(emitter("projector", turned + "<float name='fov' value='90'/><string name='fov_axis' value='y'/>"
+                                                "<texture name='irradiance' type='bitmap'><string name='filename' "
+                                                "value='alpha.png'/></texture>"));
+  const Image& image = s.images[0];
+  EXPECT_RGB(Vec3(s.lights[0].plane, 0), double(image.width) / image.height, 1, 0, 1e-6);
+  EXPECT_RGB(s.lights[0].position, 1, 2, 3, 1e-6);
+  EXPECT_RGB(s.lights[0].direction, 1, 0, 0, 1e-6);
+  EXPECT_SAYS(error_of(emitter("projector", "<transform name='to_world'><scale x='2'/></transform>")), "not stretch");
 }
 
 TEST(Emitters, Directional) {
@@ -83,7 +133,7 @@ TEST(Emitters, Directional) {
 }
 
 TEST(Emitters, UnknownOnes) {
-  for (const char* type : {"sunsky", "sun", "sky", "projector", "collimated", "ies"}) {
+  for (const char* type : {"sunsky", "sun", "sky", "collimated", "ies"}) {
     EXPECT_SAYS(error_of(emitter(type)), "unknown emitter; supported: area, envmap");
     EXPECT_TRUE(load_inside(emitter(type), lenient()).lights.empty());
   }

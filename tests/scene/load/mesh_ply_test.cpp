@@ -60,6 +60,50 @@ TEST(MeshPly, every_spelling_of_uv_and_colour) {
   EXPECT_EQ(ply(ascii(xyz + floats, one_face, body)).colors[0], Rgb(255, 51, 0));
 }
 
+// Named by Mitsuba's convention; a value of a face goes to each of its triangles.
+TEST(MeshPly, attributes_of_vertices_and_faces) {
+  const std::string vertex = xyz +
+                             "property float heat_x\nproperty uchar tint_r\nproperty uchar tint_g\nproperty uchar "
+                             "tint_b\nproperty uchar tint_a\nproperty float pair_0\nproperty float pair_1\nproperty "
+                             "int step_1\nproperty int step_2\nproperty int step_3\nproperty float odd_y\n";
+  const std::string faces =
+      "element face 3\nproperty uchar red\nproperty list uchar int vertex_indices\nproperty uchar green\n"
+      "property uchar blue\nproperty float id_0\n";
+  const Mesh m = ply(ascii(vertex, faces,
+                           "0 0 0 0.5 255 0 51 9 1 2 7 8 9 3\n4 0 0 1.5 0 0 0 9 1 2 0 0 0 3\n"
+                           "4 4 0 0 0 0 0 9 1 2 0 0 0 3\n0 4 0 0 0 0 0 9 1 2 0 0 0 3\n"
+                           "255 2 0 1 0 0 1\n0 4 0 1 2 3 255 0 2\n0 3 0 1 2 0 255 3\n",
+                           4));
+  ASSERT_EQ(m.attributes.size(), 5u);
+  EXPECT_TRUE(m.colors.empty());
+  EXPECT_EQ(m.attributes[0].name, "vertex_heat");
+  EXPECT_EQ(m.attributes[0].values[1], Rgb(1.5f));
+  EXPECT_EQ(m.attributes[1].name, "vertex_tint_color");
+  EXPECT_EQ(m.attributes[1].values[0], Rgb(1, 0, 0.2f));
+  EXPECT_EQ(m.attributes[2].name, "vertex_step");
+  EXPECT_EQ(m.attributes[2].values[0], Rgb(7, 8, 9));
+  EXPECT_FALSE(m.attributes[2].of_faces);
+  ASSERT_EQ(m.triangles.size(), 3u);
+  EXPECT_EQ(m.attributes[3].name, "face_color");
+  EXPECT_TRUE(m.attributes[3].of_faces);
+  EXPECT_EQ(m.attributes[3].values, (std::vector{Rgb(0, 1, 0), Rgb(0, 1, 0), Rgb(0, 0, 1)}));
+  EXPECT_EQ(m.attributes[4].name, "face_id");
+  EXPECT_EQ(m.attributes[4].values[2], Rgb(3));
+  // smoothed anew: vertices are made again, their attributes with them
+  const std::string corner = "0 0 0 1\n1 0 0 2\n0 1 0 3\n0 0 1 4\n3 0 1 2 5\n3 0 3 1 6\n";
+  const Mesh cut =
+      ply(ascii(xyz + "property float heat_0\n",
+                "element face 2\nproperty list uchar int vertex_indices\nproperty float id_0\n", corner, 4),
+          {.max_smooth_angle = 10});
+  ASSERT_EQ(cut.positions.size(), 6u);
+  ASSERT_EQ(cut.attributes[0].values.size(), 6u);
+  for (size_t i = 0; i < 6; ++i) {
+    const Vec3& p = cut.positions[i];
+    EXPECT_EQ(cut.attributes[0].values[i], Rgb(1 + p.x + 2 * p.y + 3 * p.z));
+  }
+  EXPECT_EQ(cut.attributes[1].values, (std::vector{Rgb(5), Rgb(6)}));
+}
+
 TEST(MeshPly, polygons_and_quads) {
   const Mesh m = ply(ascii(xyz, "element face 2\nproperty list uchar int vertex_indices\n",
                            "0 0 0\n4 0 0\n1 1 0\n0 4 0\n4 0 1 2 3\n2 0 1\n", 4));

@@ -56,7 +56,7 @@ TEST(SharedScenes, VeachAjarIsTheSameInBothSpellings) {
     const Material &m = a.materials[i], &n = b.materials[i];
     EXPECT_EQ(m.kind, n.kind);
     EXPECT_EQ(m.distribution, n.distribution);
-    EXPECT_EQ(m.nonlinear, n.nonlinear);
+    EXPECT_EQ(m.inner, n.inner);
     EXPECT_EQ(m.reflectance.value, n.reflectance.value);
     EXPECT_EQ(m.alpha_u.value, n.alpha_u.value);
     EXPECT_EQ(m.eta, n.eta);

@@ -131,9 +131,37 @@ TEST(TextureKinds, MeshAttribute) {
   surface.shape = 0;
   surface.bary = {1, 0};
   EXPECT_RGB(eval(s, s.materials[0].reflectance, surface), 0, 1, 0, 1e-6);
-  EXPECT_SAYS(error_of("<bsdf type='diffuse'><texture name='reflectance' type='mesh_attribute'>"
-                       "<string name='name' value='face_color'/></texture></bsdf>"),
-              "face_color");
+  EXPECT_RGB(mean(s, s.materials[0].reflectance), 1.0 / 3, 1.0 / 3, 1.0 / 3, 1e-6);
+}
+
+std::string with_attribute(const std::string& shape, const std::string& name, const std::string& inside = "") {
+  return "<shape type='" + shape + "'><string name='filename' value='attributes.ply'/>" + inside +
+         "<bsdf type='twosided'><bsdf type='diffuse'><texture name='reflectance' type='scale'><texture "
+         "type='mesh_attribute'><string name='name' value='" +
+         name + "'/></texture><float name='scale' value='0.5'/></texture></bsdf></bsdf></shape>";
+}
+
+TEST(TextureKinds, AttributesOfFacesAndVertices) {
+  Surface surface;
+  surface.shape = 0;
+  surface.prim = 1;
+  surface.bary = {0, 0.5f};
+  Scene s = load_inside(with_attribute("ply", "face_color"));
+  EXPECT_RGB(eval(s, s.materials[0].reflectance, surface), 0, 0.5, 0.1, 1e-6);
+  s = load_inside(with_attribute("ply", "vertex_heat"));
+  EXPECT_RGB(eval(s, s.materials[0].reflectance, surface), 0.25, 0.25, 0.25, 1e-6);
+  // what is not there
+  EXPECT_SAYS(error_of(with_attribute("ply", "vertex_color")),
+              "test.xml:2: <shape type=\"ply\">: its textures show the mesh attribute \"vertex_color\", which it "
+              "lacks; it has face_color, vertex_bad, vertex_heat");
+  EXPECT_SAYS(error_of(with_attribute("sphere", "face_color")), "it has none");
+  s = load_inside(with_attribute("ply", "face_colour"), lenient());
+  EXPECT_RGB(eval(s, s.materials[0].reflectance, surface), 0, 0, 0, 0);
+  EXPECT_SAYS(error_of(with_attribute("ply", "vertex_bad")), "not finite");
+  EXPECT_SAYS(error_of(with_attribute("ply", "color")), "begins with vertex_ or face_");
+  EXPECT_SAYS(error_of("<shape type='rectangle'><emitter type='area'><texture name='radiance' type='mesh_attribute'>"
+                       "<string name='name' value='face_glow'/></texture></emitter></shape>"),
+              "face_glow");
 }
 
 TEST(TextureKinds, Unknown) {

@@ -23,6 +23,18 @@ struct Diffuse {
   Rgb reflectance;
 };
 
+/// Oren and Nayar 1994: Lambertian facets of V-shaped grooves.
+struct RoughDiffuse {
+  Rgb reflectance;
+  float variance;  ///< of the facets' slope angle [rad^2]
+  bool simple;     ///< their qualitative model (section 4.4), without interreflection
+};
+
+/// Lambertian, to the other side alone.
+struct DiffuseTransmitter {
+  Rgb transmittance;
+};
+
 struct Conductor {
   Rgb specular, eta, k;
 };
@@ -77,6 +89,14 @@ struct Phong {
   float share;
 };
 
+/// Elliptic Gaussian lobe of Ward 1992 over a diffuse base.
+struct Ward {
+  Rgb diffuse, specular;
+  Facets facets;
+  float share;
+  WardKind kind;
+};
+
 /// Burley 2012 and 2015; Material says what each number means.
 struct Principled {
   Rgb base;
@@ -96,6 +116,9 @@ enum class LobeKind : uint8_t {
   roughplastic,
   phong,
   principled,
+  roughdiffuse,
+  difftrans,
+  ward,
 };
 
 /// One cache line long. Left uninitialised until a kind is assigned, so that a diffuse vertex writes 16 bytes, not 64.
@@ -111,6 +134,9 @@ struct Lobe {
     RoughPlastic roughplastic;
     Phong phong;
     Principled principled;
+    RoughDiffuse roughdiffuse;
+    DiffuseTransmitter difftrans;
+    Ward ward;
   };
   LobeKind kind;
 
