@@ -1,8 +1,7 @@
 #include "ajar/field/learn.h"
 
-#include <tbb/parallel_for.h>
-
 #include "ajar/core/frame.h"
+#include "ajar/core/parallel.h"
 #include "ajar/field/probes.h"
 #include "fixed.h"
 
@@ -217,7 +216,7 @@ Field learn_field(const Fields& fields, const Field& field, const Tallies& talli
   Field next;
   next.unit = field.unit;
   next.cells.resize(n);
-  tbb::parallel_for(0u, blocks, [&](uint32_t b) {
+  parallel_for(blocks, [&](uint32_t b) {
     Work work{fields.structure, fields.rule, &field, &tallies, &options, {}};
     for (uint32_t c = b * block; c < std::min(n, (b + 1) * block); ++c) {
       const double edge = double(fields.table.edge(level_of(fields.cells[c].key)));

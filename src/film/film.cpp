@@ -1,10 +1,9 @@
 #include "ajar/film/film.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <numeric>
+
+#include "ajar/core/parallel.h"
 
 namespace ajar {
 namespace {
@@ -99,7 +98,7 @@ Film make_film(const Camera& camera, const Filter& filter, bool splats) {
 void merge(Film& film, const std::vector<std::vector<Splat>>& chunks) {
   // Bands of rows in parallel; within a band, splats in the order of chunks and paths.
   const int bands = std::clamp(film.height / 32, 1, 16);
-  tbb::parallel_for(0, bands, [&](int band) {
+  parallel_for(bands, [&](int band) {
     const int from = film.height * band / bands, to = film.height * (band + 1) / bands;
     const float reach = film.filter.radius + 0.5f, lo = float(film.y0 + from) - reach, hi = float(film.y0 + to) + reach;
     for (const auto& chunk : chunks)
@@ -117,8 +116,8 @@ void drop_passes(Film& film) {
 
 void finish_pass(Film& film) {
   const float scale = 1.0f / float(film.pixels());
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, film.pixels(), 16384), [&](const auto& range) {
-    for (size_t i = range.begin(); i != range.end(); ++i) {
+  parallel_ranges(film.pixels(), 16384, [&](size_t from, size_t to) {
+    for (size_t i = from; i < to; ++i) {
       glm::dvec3 x(film.camera[i]);
       film.camera_sum[i] += x;
       film.camera[i] = Rgb(0);
@@ -170,7 +169,7 @@ ErrorEstimate estimate_error(const Film& film) {
   const std::vector<glm::dvec3> mean = means(film);
   if (std::all_of(mean.begin(), mean.end(), [](const glm::dvec3& m) { return m == glm::dvec3(0); })) return {};
   std::vector<double> error(film.pixels());
-  tbb::parallel_for(0, film.height, [&](int y) {
+  parallel_for(film.height, [&](int y) {
     for (int x = 0; x < film.width; ++x) error[size_t(y) * film.width + x] = pixel_error(film, mean, x, y);
   });
   const double more = film.passes / (film.passes + share_done(film));

@@ -1,5 +1,4 @@
-#include <tbb/parallel_for.h>
-
+#include "ajar/core/parallel.h"
 #include "ajar/core/sampler.h"
 #include "ajar/field/guide.h"
 #include "ajar/render/render.h"
@@ -30,7 +29,7 @@ Picture render_features(const Scene& scene, const Accel& accel, uint64_t seed, i
               {"Albedo.R", "Albedo.G", "Albedo.B", "N.X", "N.Y", "N.Z", "P.X", "P.Y", "P.Z"},
               {}};
   out.pixels.resize(size_t(channels) * size_t(out.width) * size_t(out.height));
-  tbb::parallel_for(0, out.height, [&](int y) {
+  parallel_for(out.height, [&](int y) {
     for (int x = 0; x < out.width; ++x) {
       const size_t pixel = size_t(y) * size_t(out.width) + size_t(x);
       for (int i = 0; i < samples; ++i) {

@@ -36,8 +36,8 @@ struct Sample {
   Rgb value{0};          ///< radiance found by the camera path, unfiltered
 };
 
-/// Storage of one thread at work on one chunk; kept from chunk to chunk.
-struct Scratch {
+/// Storage of one thread at work on one chunk; kept from chunk to chunk. Threads share no cache line.
+struct alignas(64) Scratch {
   Subpath camera, light;
   Counters counters;
   Sightings sightings;

@@ -1,15 +1,13 @@
 #include "ajar/render/render.h"
 
 #include <fmt/format.h>
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <bit>
 #include <chrono>
 #include <ctime>
 
 #include "ajar/core/error.h"
+#include "ajar/core/parallel.h"
 #include "job.h"
 
 namespace ajar {
@@ -124,8 +122,6 @@ void note_rejected(RenderStats& stats, const std::vector<uint64_t>& pixels, cons
                                          p / uint64_t(film.width), film.dropped + film.passes, seed));
 }
 
-using Scratches = tbb::enumerable_thread_specific<Scratch>;
-
 void teach(RenderState& state, const RenderOptions& options) {
   const double wall = wall_seconds(), cpu = process_cpu_seconds();
   const uint32_t dropped = state.film.dropped;
@@ -191,8 +187,8 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   };
   start_clocks();
   const bool timed = options.seconds > 0 || options.cpu_seconds > 0;
-  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
-  Scratches scratches;
+  Threads threads(options.threads);
+  std::vector<Scratch> scratches(size_t(threads.count()));
   Batch batch;
   const uint32_t all = chunk_count(film);
   const auto out_of_budget = [&] {
@@ -201,9 +197,9 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
     if (!timed && options.noise <= 0) return film.passes >= options.spp;
     if (options.noise > 0) {
       if (options.spp > 0 && film.passes >= options.spp) return true;
-      if (film.chunks == 0 && is_checked(film.passes) &&
-          arena.execute([&] { return estimated_error(film); }) <= options.noise)
-        return true;
+      double error = infinity;
+      if (film.chunks == 0 && is_checked(film.passes)) threads.run([&] { error = estimated_error(film); });
+      if (error <= options.noise) return true;
     }
     return (options.seconds > 0 && stats.seconds >= options.seconds) ||
            (options.cpu_seconds > 0 && stats.cpu_seconds >= options.cpu_seconds);
@@ -214,9 +210,9 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
     batch.strategies.resize(count);
     batch.ledgers.assign(count, {});
     batch.rejected_at.resize(count);
-    arena.execute([&] {
-      tbb::parallel_for(0u, count, [&](uint32_t i) {
-        Scratch& scratch = scratches.local();
+    threads.run([&] {
+      parallel_for(count, [&](uint32_t i) {
+        Scratch& scratch = scratches[thread_slot()];
         batch.splats[i].clear();
         batch.strategies[i].clear();
         scratch.splats = &batch.splats[i];
@@ -239,7 +235,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
       s.counters = {};
       s.rejected = 0;
     }
-    if (job.learning && film.chunks == 0) arena.execute([&] { teach(state, options); });
+    if (job.learning && film.chunks == 0) threads.run([&] { teach(state, options); });
     // Who watches, measuring errors perhaps, does so on his own time.
     read_clocks();
     const bool go_on = !monitor || monitor(state);

@@ -1,9 +1,9 @@
 #include "environment.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include "ajar/core/error.h"
+#include "ajar/core/parallel.h"
 
 namespace ajar {
 namespace {
@@ -86,7 +86,7 @@ Environment make_environment(const Scene& scene, uint32_t id, float scale) {
   const Image& image = scene.images[id];
   std::vector<float> weights(size_t(image.width) * size_t(image.height));
   std::vector<int> bad(size_t(image.height), -1);
-  tbb::parallel_for(0, image.height, [&](int y) {
+  parallel_for(image.height, [&](int y) {
     const float solid = float(solid_of_row(y, image.height));
     for (int x = 0; x < image.width; ++x) {
       const Rgb c = texel(image, x, y);

@@ -1,9 +1,7 @@
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
 
 #include "ajar/core/error.h"
+#include "ajar/core/parallel.h"
 #include "solid.h"
 
 namespace ajar {
@@ -16,17 +14,23 @@ struct Box {
   void add(const Box& b) { lo = glm::min(lo, b.lo), hi = glm::max(hi, b.hi); }
 };
 
-// Calls f(range, value) over large arrays in parallel and joins the values; the result does not depend on the division.
+constexpr size_t grain = 16384;
+
+// Joins what f(from, to) gives for blocks of [0, n), in their order.
 template <class T, class F, class Join>
-T reduce(size_t n, const T& identity, const F& f, const Join& join) {
-  return tbb::parallel_reduce(tbb::blocked_range<size_t>(0, n, 16384), identity, f, join);
+T reduce(size_t n, T value, const F& f, const Join& join) {
+  std::vector<T> parts((n + grain - 1) / grain);
+  parallel_for(parts.size(), [&](size_t b) { parts[b] = f(b * grain, std::min(n, (b + 1) * grain)); });
+  for (const T& part : parts) value = join(value, part);
+  return value;
 }
 
 Box box_of(const std::vector<Vec3>& points) {
   return reduce(
       points.size(), Box{},
-      [&](const tbb::blocked_range<size_t>& r, Box b) {
-        for (size_t i = r.begin(); i != r.end(); ++i) b.add(points[i]);
+      [&](size_t from, size_t to) {
+        Box b;
+        for (size_t i = from; i < to; ++i) b.add(points[i]);
         return b;
       },
       [](Box a, const Box& b) {
@@ -61,8 +65,9 @@ Box box_of(const Mat4& m, const Box& box) {
 float farthest2(const std::vector<Vec3>& points, const Vec3& center) {
   return reduce(
       points.size(), 0.0f,
-      [&](const tbb::blocked_range<size_t>& r, float most) {
-        for (size_t i = r.begin(); i != r.end(); ++i) most = std::max(most, length2(points[i] - center));
+      [&](size_t from, size_t to) {
+        float most = 0;
+        for (size_t i = from; i < to; ++i) most = std::max(most, length2(points[i] - center));
         return most;
       },
       [](float a, float b) { return std::max(a, b); });
@@ -104,23 +109,23 @@ void set_packed(Mesh& mesh) {
   mesh.packed.clear();
   mesh.packed.shrink_to_fit();
   std::vector<PackedVertex> packed(mesh.positions.size());
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, packed.size(), 16384), [&](const auto& r) {
-    for (size_t i = r.begin(); i != r.end(); ++i) {
+  parallel_ranges(packed.size(), grain, [&](size_t from, size_t to) {
+    for (size_t i = from; i < to; ++i) {
       const Vec2 uv = mesh.uvs.empty() ? Vec2(0) : mesh.uvs[i];
       packed[i] = {mesh.positions[i], uv.x, mesh.normals.empty() ? Vec3(0) : mesh.normals[i], uv.y};
     }
   });
   mesh.packed = std::move(packed);
   mesh.faces.resize(mesh.triangles.size());
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, mesh.faces.size(), 16384), [&](const auto& r) {
-    for (size_t i = r.begin(); i != r.end(); ++i) mesh.faces[i] = pack_triangle(mesh, uint32_t(i));
+  parallel_ranges(mesh.faces.size(), grain, [&](size_t from, size_t to) {
+    for (size_t i = from; i < to; ++i) mesh.faces[i] = pack_triangle(mesh, uint32_t(i));
   });
 }
 
 void set_areas(Mesh& mesh) {
   std::vector<float> areas(mesh.triangles.size());
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, areas.size(), 4096), [&](const auto& r) {
-    for (size_t i = r.begin(); i != r.end(); ++i) areas[i] = triangle_area(mesh, uint32_t(i));
+  parallel_ranges(areas.size(), grain / 4, [&](size_t from, size_t to) {
+    for (size_t i = from; i < to; ++i) areas[i] = triangle_area(mesh, uint32_t(i));
   });
   mesh.area = Distribution(areas);
   mesh.total_area = mesh.area.sum;

@@ -1,6 +1,6 @@
 # The house rules that a compiler does not check. Usage: cmake -DROOT=<source tree> -P house.cmake
-# A room includes only itself and the rooms to its left; Embree stays in accel; every header says what enters and what leaves;
-# files stay short; a few words stay out.
+# A room includes only itself and the rooms to its left; Embree stays in accel, TBB in one file of core; every header says what
+# enters and what leaves; files stay short; a few words stay out.
 cmake_minimum_required(VERSION 3.22)
 
 set(rooms core scene accel field path join film render report app)
@@ -47,6 +47,9 @@ macro(check_include file room included)
   endif()
   if("${included}" MATCHES "embree" AND NOT ("${file}" MATCHES "^src/accel/"))
     breach("${file}: includes ${included}; only src/accel may know the ray tracer")
+  endif()
+  if("${included}" MATCHES "^(tbb|oneapi)/" AND NOT "${file}" STREQUAL "src/core/parallel.cpp")
+    breach("${file}: includes ${included}; loops go through ajar/core/parallel.h, where the thread sanitizer follows them")
   endif()
 endmacro()
 

@@ -37,6 +37,7 @@ expect_breach("not in include" src/app/bad.cpp "#include \"ajar/core/gone.h\"\n"
 expect_breach("climbing" src/app/bad.cpp "#include \"../render/job.h\"\n")
 expect_breach("private to render" src/app/bad.cpp "#include \"render/job.h\"\n")
 expect_breach("only src/accel" src/render/bad.cpp "#include <embree3/rtcore.h>\n")
+expect_breach("loops go through" src/film/bad.cpp "#include <tbb/parallel_for.h>\n")
 expect_breach("does not open" include/ajar/core/bad.h "#pragma once\n// Enters: x\n// Leaves: y\n")
 expect_breach("not a room" src/cellar/bad.cpp "int a;\n")
 expect_breach("holds" src/core/bad.cpp "int seed() { return std::rand(); }\n")

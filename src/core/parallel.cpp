@@ -1,0 +1,38 @@
+// The only file that includes TBB. It is compiled without the thread sanitizer, as TBB itself is (see LoopOrder).
+#include "ajar/core/parallel.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+
+namespace ajar {
+
+// TBB starts no more threads than there are processors unless told.
+struct Threads::Arena {
+  tbb::task_arena arena;
+  tbb::global_control most;
+};
+
+Threads::Threads(int count) {
+  const int processors = tbb::info::default_concurrency();
+  if (count <= 0) count = processors;
+  arena_.reset(new Arena{tbb::task_arena(count),
+                         {tbb::global_control::max_allowed_parallelism, size_t(std::max(count, processors))}});
+}
+Threads::~Threads() = default;
+int Threads::count() const { return arena_->arena.max_concurrency(); }
+void Threads::run(void (*call)(const void*), const void* f) {
+  arena_->arena.execute([&] { call(f); });
+}
+
+uint32_t thread_slot() { return uint32_t(tbb::this_task_arena::current_thread_index()); }
+
+void detail::run_ranges(size_t n, size_t grain, void (*call)(void* loop, size_t from, size_t to), void* loop) {
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, n, grain), [=](const auto& r) { call(loop, r.begin(), r.end()); });
+}
+
+}  // namespace ajar
