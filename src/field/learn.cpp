@@ -284,7 +284,10 @@ void add_cells(Fields& fields, const Sightings& sightings, const LearnOptions& o
     const Vec3 n = Vec3(glm::normalize(glm::dvec3(seen.normal)));
     if (!is_finite(n)) continue;
     const uint32_t id = uint32_t(fields.cells.size());
-    fields.cells.push_back({key, parent == none ? make_frame(n) : fields.cells[parent].frame, 0});
+    if (parent == none)
+      fields.cells.push_back({key, make_frame(n), 0, fields.regions++ % most_regions});
+    else
+      fields.cells.push_back({key, fields.cells[parent].frame, 0, fields.cells[parent].region});
     insert(fields.table, key, id);
     add_cell(fields.q, parent, fields.structure);
     add_cell(fields.w, parent, fields.structure);
@@ -341,7 +344,9 @@ Fields learn(const Fields& fields, const Training& training, const Sightings& si
     if (next.structure != Structure::adaptive) continue;
     if (cell.seen > options.divide_cell && level_of(cell.key) < most_cell_levels) set_divided(next.table, cell.key);
   }
+  next.regions = fields.regions;
   add_cells(next, sightings, options);
+  next.views = learn_views(fields.views, training.views, next.regions, 0.9f);
   restrict_to(next, options.guided);
   return next;
 }

@@ -11,7 +11,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind fields_kind = {"AJARfd02", "file of fields", "make one with --save-fields",
+constexpr FileKind fields_kind = {"AJARfd03", "file of fields", "make one with --save-fields",
                                   "learn the fields again with --save-fields"};
 
 bool is_amount(float x) { return x >= 0 && x < infinity; }
@@ -30,7 +30,7 @@ template <class Io, class Part>
 void tallies_members(Io& io, Part& t) {
   io.array(t.value), io.array(t.weight), io.array(t.direct), io.array(t.directs), io.array(t.visits);
 }
-static_assert(sizeof(FieldCell) == 20 && sizeof(StrataNode) == 40 && sizeof(Cell) == 48 && sizeof(Sighting) == 32 &&
+static_assert(sizeof(FieldCell) == 20 && sizeof(StrataNode) == 40 && sizeof(Cell) == 56 && sizeof(Sighting) == 32 &&
                   sizeof(Probe) == 28,
               "a member was added or taken away: list it here and raise the versions of the files");
 
@@ -107,6 +107,16 @@ void read(Reader& r, Structure structure, size_t cells, Field& f) {
     r.require(claim(f.nodes, c.root, claimed) && (structure == Structure::adaptive || is_patches(f.nodes, c.root)));
 }
 
+void read(Reader& r, Views& v) {
+  r.value(v.regions);
+  r.array(v.tried), r.array(v.seen);
+  const size_t size = size_t(v.regions) * v.regions;
+  r.require(v.regions <= most_regions && v.tried.size() == size && v.seen.size() == size &&
+            std::all_of(v.tried.begin(), v.tried.end(), is_amount) &&
+            std::all_of(v.seen.begin(), v.seen.end(), is_amount));
+  v = learn_views(v, start_tallies(v), v.regions, 1);
+}
+
 bool is_sound(const Frame& f) {
   const auto unit = [](const Vec3& v) { return std::abs(glm::dot(v, v) - 1) < 1e-3f; };
   const auto apart = [](const Vec3& a, const Vec3& b) { return std::abs(glm::dot(a, b)) < 1e-3f; };
@@ -139,10 +149,12 @@ void write(Writer& w, const Fields& fields) {
   w.value(uint64_t(fields.cells.size()));
   for (size_t i = 0; i < fields.cells.size(); ++i) {
     const Cell& c = fields.cells[i];
-    w.value(c.key), w.value(divided[i]), frame_members(w, c.frame), w.value(c.seen);
+    w.value(c.key), w.value(divided[i]), frame_members(w, c.frame), w.value(c.seen), w.value(c.region);
   }
   write(w, fields.q);
   write(w, fields.w);
+  w.value(fields.regions), w.value(fields.views.regions);
+  w.array(fields.views.tried), w.array(fields.views.seen);
 }
 
 void read(Reader& r, Fields& fields) {
@@ -161,20 +173,28 @@ void read(Reader& r, Fields& fields) {
   for (uint32_t i = 0; i < fields.cells.size(); ++i) {
     Cell& c = fields.cells[i];
     char divided = 0;
-    r.value(c.key), r.value(divided), frame_members(r, c.frame), r.value(c.seen);
-    r.require(is_cell_key(c.key) && cell_of(fields.table, c.key) == none && is_sound(c.frame) && is_amount(c.seen));
+    r.value(c.key), r.value(divided), frame_members(r, c.frame), r.value(c.seen), r.value(c.region);
+    r.require(is_cell_key(c.key) && cell_of(fields.table, c.key) == none && is_sound(c.frame) && is_amount(c.seen) &&
+              c.region < most_regions);
     insert(fields.table, c.key, i);
     if (divided) set_divided(fields.table, c.key);
   }
   read(r, fields.structure, fields.cells.size(), fields.q);
   read(r, fields.structure, fields.cells.size(), fields.w);
+  r.value(fields.regions);
+  read(r, fields.views);
 }
 
-void write(Writer& w, const Training& training) { tallies_members(w, training.q), tallies_members(w, training.w); }
+void write(Writer& w, const Training& training) {
+  tallies_members(w, training.q), tallies_members(w, training.w);
+  w.array(training.views.counts);
+}
 
 void read(Reader& r, const Fields& fields, Training& training) {
   read(r, fields.q, training.q);
   read(r, fields.w, training.w);
+  r.array(training.views.counts);
+  r.require(training.views.counts.size() == start_tallies(fields.views).counts.size());
 }
 
 void write(Writer& w, const Sightings& sightings) {

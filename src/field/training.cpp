@@ -24,6 +24,7 @@ Training start_training(const Fields& fields) {
   Training t;
   resize(t.q, fields.q);
   resize(t.w, fields.w);
+  t.views = start_tallies(fields.views);
   return t;
 }
 

@@ -5,12 +5,12 @@
 namespace ajar {
 namespace {
 
-// The end of a subpath at its vertex n - 1 >= 1, from which the other side's vertex lies in direction w: other is what
+// The end of a subpath at its last vertex, not its first, from which the other side's vertex lies in direction w: other is what
 // the other side's density becomes here, reverse the density of going back to the vertex before.
-End end_at(const Subpath& subpath, int n, double other, double reverse) {
-  const Vertex& v = subpath[n - 1];
-  const Vertex& before = subpath[n - 2];
-  return {n, v.own, other, before.own, reverse * v.back, before.delta, v.sum};
+End end_at(std::span<const Vertex> subpath, double other, double reverse) {
+  const Vertex& v = subpath.back();
+  const Vertex& before = subpath[subpath.size() - 2];
+  return {int(subpath.size()), v.own, other, before.own, reverse * v.back, before.delta, v.sum};
 }
 
 }  // namespace
@@ -70,16 +70,16 @@ bool join_light(const Scene& scene, const Fields* fields, Sampler& sampler, cons
   const double to_here = point.infinite ? emission.position : emission.direction;
   const double nee = hittable ? double(d.pdf) * cos_light / d2 * pick : own;
   out.light = {1, own, e.pdf * cos_light / d2, 1, 0, false, hittable ? 1.0 : 0.0};
-  out.camera = end_at(camera, t, to_here * cos_here / d2, e.pdf_reverse);
+  out.camera = end_at(camera.first(t), to_here * cos_here / d2, e.pdf_reverse);
   out.shares = {ratio(nee, own), light_paths};
   out.segment = segment_to(d, c.p, c.ng, c.error);
   return true;
 }
 
-bool join_vertices(const Subpath& light, int s, double share, const Subpath& camera, int t, double light_paths,
+bool join_vertices(std::span<const Vertex> light, double share, std::span<const Vertex> camera, double light_paths,
                    Candidate& out) {
-  const Vertex& a = light[s - 1];
-  const Vertex& c = camera[t - 1];
+  const Vertex& a = light.back();
+  const Vertex& c = camera.back();
   const Vec3 between = c.p - a.p;
   if (!may_scatter(c.guide, -between) || !may_scatter(a.guide, between)) return false;
   const float d2 = length2(between);
@@ -91,8 +91,8 @@ bool join_vertices(const Subpath& light, int s, double share, const Subpath& cam
   const GuideEval ea = evaluate(a.guide, w, Mode::importance);
   out.value = a.beta * ea.f_cos * ec.f_cos * c.beta / d2;
   if (is_black(out.value)) return false;
-  out.light = end_at(light, s, ec.pdf * std::abs(glm::dot(a.ng, w)) / d2, ea.pdf_reverse);
-  out.camera = end_at(camera, t, ea.pdf * std::abs(glm::dot(c.ng, w)) / d2, ec.pdf_reverse);
+  out.light = end_at(light, ec.pdf * std::abs(glm::dot(a.ng, w)) / d2, ea.pdf_reverse);
+  out.camera = end_at(camera, ea.pdf * std::abs(glm::dot(c.ng, w)) / d2, ec.pdf_reverse);
   out.shares = {share, light_paths};
   const Vec3 from = offset(c.p, c.ng, c.error, -w);
   out.segment = {from, shadow_end(a.p, a.ng, a.error, w, distance) - from};
@@ -113,7 +113,7 @@ bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int
   } else {
     const GuideEval e = evaluate(a.guide, k.w, Mode::importance);
     out.value = a.beta * e.f_cos * k.factor;  // (P3)
-    out.light = end_at(light, s, k.factor * cosine, e.pdf_reverse);
+    out.light = end_at(light.first(s), k.factor * cosine, e.pdf_reverse);
   }
   if (is_black(out.value)) return false;
   out.camera = {1, 1, 0, 1, 0, false, 0};

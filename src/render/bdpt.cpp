@@ -119,6 +119,25 @@ void join_next_event(Work& work) {
   teach_direct(work, camera[t - 1], lit ? luminance(c.arrives) : 0);
 }
 
+// s >= 2: one of all light vertices of the chunk.
+void join_stored(Work& work) {
+  const Job& job = work.job;
+  const LightStore& store = work.scratch.store;
+  const Subpath& camera = work.scratch.camera;
+  const Vertex& v = camera[camera.n - 1];
+  StoreChoice choice;
+  Candidate c;
+  if (!choose(store, v, job.walk.inner_share, job.walk.max_edges + 1 - camera.n, work.sample.sampler, choice)) return;
+  const LightStore::Place& at = *choice.place;
+  if (join_vertices(store.subpath(at), at.share, camera.first(camera.n), job.walk.light_paths, c)) {
+    c.value *= choice.weight;
+    const bool seen = add_if_visible(work, c, at.s, camera.n);
+    if (work.sample.teaches && v.guide.cell != none)
+      record_join(job.walk.fields->views, job.training->views, v.guide.fields->cells[v.guide.cell].region, at.region, seen);
+  }
+  charge_join(work.scratch, at.s, camera.n);
+}
+
 // All joins at the camera subpath's last vertex.
 void join_all(Work& work, const Surface& surface) {
   const Job& job = work.job;
@@ -128,11 +147,12 @@ void join_all(Work& work, const Surface& surface) {
   join_surface(work, surface);
   if (t > job.walk.max_edges || !connectable(camera[t - 1].guide)) return;
   join_next_event(work);
+  if (job.stored) return join_stored(work);
   const int most = std::min(light.n, job.walk.max_edges + 1 - t);
   Candidate c;
   for (int s = 2; s <= most; ++s)
     if (connectable(light[s - 1].guide)) {
-      if (join_vertices(light, s, work.light_share, camera, t, job.walk.light_paths, c)) add_if_visible(work, c, s, t);
+      if (join_vertices(light.first(s), work.light_share, camera.first(t), job.walk.light_paths, c)) add_if_visible(work, c, s, t);
       charge_join(work.scratch, s, t);
     }
 }
@@ -145,24 +165,34 @@ void join_escapes(Work& work, const Walk& walk) {
   charge_join(work.scratch, 0, camera.n + 1);
 }
 
-// What both subpaths teach, and that the lens sees the camera subpath's first vertex.
-void teach(Work& work) {
+// What the camera subpath teaches, and that the lens sees its first vertex.
+void teach_camera(Work& work) {
   const Job& job = work.job;
   const Fields& fields = *job.walk.fields;
   const Subpath& camera = work.scratch.camera;
   if (camera.n > 1 && connectable(camera[1].guide) && camera[1].guide.cell != none)
     record_direct(fields.w, job.training->w, camera[1].guide.cell,
                   float(camera[1].own) * relative_importance(fields, camera[1].guide));
-  record_subpath(fields, *job.training, work.scratch.sightings, work.scratch.light, Side::light);
   record_subpath(fields, *job.training, work.scratch.sightings, camera, Side::camera);
 }
 
 }  // namespace
 
+void trace_light_half(const Job& job, Sample& sample, Scratch& scratch) {
+  Work work{job, sample, scratch};
+  scratch.light.n = 0;
+  trace_light_subpath(work);
+  add(scratch.store, scratch.light, work.light_share, job.walk.inner_share);
+  charge(scratch, scratch.ledger->light_ticks);
+  if (!sample.teaches) return;
+  record_subpath(*job.walk.fields, *job.training, scratch.sightings, scratch.light, Side::light);
+  charge(scratch, scratch.ledger->learn_ticks);
+}
+
 void trace_bdpt(const Job& job, Sample& sample, Scratch& scratch) {
   Work work{job, sample, scratch};
   scratch.light.n = 0;
-  if (job.walk.light_paths > 0) trace_light_subpath(work);
+  if (job.walk.light_paths > 0 && !job.stored) trace_light_subpath(work);
   charge(scratch, scratch.ledger->light_ticks);
   Subpath& camera = scratch.camera;
   Walk walk;
@@ -180,7 +210,7 @@ void trace_bdpt(const Job& job, Sample& sample, Scratch& scratch) {
   } while (camera.n <= job.walk.max_edges && scatter(job.walk, sample.sampler, camera, walk));
   charge(scratch, scratch.ledger->camera_ticks);
   if (!sample.teaches) return;
-  teach(work);
+  teach_camera(work);
   charge(scratch, scratch.ledger->learn_ticks);
 }
 

@@ -4,6 +4,7 @@
 
 #include "ajar/film/pyramid.h"
 #include "ajar/join/connect.h"
+#include "ajar/join/store.h"
 #include "ajar/path/record.h"
 #include "ajar/render/learning.h"
 #include "ajar/render/ledger.h"
@@ -19,6 +20,7 @@ struct Job {
   uint64_t seed = 0;
   bool techniques = false;
   bool next_event = true;
+  bool stored = false;  ///< light subpaths were traced before, and are in the store
   const Learning* learning = nullptr;  ///< null: unguided
   Training* training = nullptr;
 };
@@ -39,6 +41,12 @@ struct Sample {
 /// Storage of one thread at work on one chunk; kept from chunk to chunk. Threads share no cache line.
 struct alignas(64) Scratch {
   Subpath camera, light;
+  LightStore store;  ///< of the chunk
+  struct Part {
+    Sample sample;
+    bool splat = false;  ///< its light subpath brought something
+  };
+  std::vector<Part> samples;  ///< of the chunk
   Counters counters;
   Sightings sightings;
   uint64_t rejected = 0;
@@ -57,6 +65,8 @@ using Trace = void (*)(const Job&, Sample&, Scratch&);
 void trace_path(const Job&, Sample&, Scratch&);
 void trace_bdpt(const Job&, Sample&, Scratch&);
 void trace_light(const Job&, Sample&, Scratch&);
+/// The first half of guided-bdpt: the light subpath of one sample, put into the chunk's store. The second is trace_bdpt.
+void trace_light_half(const Job&, Sample&, Scratch&);
 
 /// The time since the last charge goes to a part of the ledger.
 inline void charge(Scratch& scratch, uint64_t& part) {

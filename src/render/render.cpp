@@ -64,22 +64,35 @@ Sample make_sample(const Job& job, const Film& film, int x, int y) {
 // Not those that are recorded more than others.
 bool is_timed(const Sample& s) { return hash(0x71c5 + s.path, s.pass) % timed_samples == 0; }
 
-void trace_pixel(const Job& job, Trace trace, Film& film, int x, int y, Scratch& scratch) {
-  Sample sample = make_sample(job, film, x, y);
+// The light half of a sample; whether it brought something.
+bool trace_half(const Job& job, Sample& sample, Scratch& scratch) {
+  const size_t splats = scratch.splats->size();
+  scratch.clock = is_timed(sample) ? clock_ticks() : 0;
+  trace_light_half(job, sample, scratch);
+  return scratch.splats->size() > splats;
+}
+
+void trace_pixel(const Job& job, Trace trace, Film& film, Sample& sample, bool splat, Scratch& scratch) {
   const size_t splats = scratch.splats->size();
   scratch.clock = is_timed(sample) ? clock_ticks() : 0;
   trace(job, sample, scratch);
   if (!accept(sample.value, sample, scratch)) sample.value = Rgb(0);
   ++scratch.counters.camera_paths;
-  scratch.counters.zero_paths += is_black(sample.value) && scratch.splats->size() == splats;
+  scratch.counters.zero_paths += is_black(sample.value) && !splat && scratch.splats->size() == splats;
   film.camera[sample.path] = sample.value * sample.filter;
 }
 
 void trace_chunk(const Job& job, Trace trace, Film& film, uint32_t chunk, Scratch& scratch) {
   const int x0 = int(chunk) % tiles_x(film) * tile, y0 = int(chunk) / tiles_x(film) * tile;
+  const int x1 = std::min(x0 + tile, film.width), y1 = std::min(y0 + tile, film.height);
   scratch.rejected_at = Scratch::no_path;
-  for (int y = y0; y < std::min(y0 + tile, film.height); ++y)
-    for (int x = x0; x < std::min(x0 + tile, film.width); ++x) trace_pixel(job, trace, film, x, y, scratch);
+  scratch.samples.clear();
+  for (int y = y0; y < y1; ++y)
+    for (int x = x0; x < x1; ++x) scratch.samples.push_back({make_sample(job, film, x, y)});
+  clear(scratch.store);
+  if (job.stored)
+    for (auto& [sample, splat] : scratch.samples) splat = trace_half(job, sample, scratch);
+  for (auto& [sample, splat] : scratch.samples) trace_pixel(job, trace, film, sample, splat, scratch);
 }
 
 Job make_job(const Scene& scene, const Accel& accel, const RenderOptions& options, const Film& film) {
@@ -174,7 +187,8 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   if (find_integrator(options.integrator).guided) {
     job.learning = &state.learning, job.training = &state.learning.training;
     job.walk.fields = &state.learning.fields;
-    job.walk.inner_share = film.splats ? guided_inner_share : 0;
+    job.walk.inner_share = film.splats ? (getenv("INNER") ? atof(getenv("INNER")) : guided_inner_share) : 0;
+    job.stored = film.splats && !getenv("NOSTORE");
   }
   double wall0 = 0, cpu0 = 0;
   const auto start_clocks = [&] {

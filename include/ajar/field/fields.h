@@ -5,6 +5,7 @@
 
 #include "ajar/field/cells.h"
 #include "ajar/field/strata.h"
+#include "ajar/field/views.h"
 
 namespace ajar {
 
@@ -34,6 +35,7 @@ struct Cell {
   CellKey key = 0;
   Frame frame;     ///< its strata are about frame.n
   float seen = 0;  ///< vertices since it was made
+  uint32_t region = no_region;  ///< the top-level cell that it is part of, by number (views.h)
 };
 
 /// How the scene is divided into cells and a cell's hemisphere into strata (docs/method.md, "Structures").
@@ -59,6 +61,8 @@ struct Fields {
   CellTable table;
   std::vector<Cell> cells;
   Field q, w;
+  Views views;
+  uint32_t regions = 0;     ///< top-level cells
   uint32_t generation = 0;  ///< how often it was learned
 
   const Field& of(Side side) const;

@@ -26,6 +26,7 @@ struct Tallies {
 
 struct Training {
   Tallies q, w;
+  ViewTallies views;
 
   Tallies& of(Side side);
 };

@@ -30,8 +30,8 @@ bool join_escape(const Scene& scene, const Fields* fields, uint32_t light, const
 /// s = 1: next-event estimation at the camera subpath's vertex t - 1. light_paths as in WalkOptions, also below.
 bool join_light(const Scene& scene, const Fields* fields, Sampler& sampler, const Subpath& camera, int t,
                 double light_paths, Candidate& out);
-/// s >= 2, t >= 2: the vertices s - 1 and t - 1. share is the light walk's first_share.
-bool join_vertices(const Subpath& light, int s, double share, const Subpath& camera, int t, double light_paths,
+/// s >= 2, t >= 2: the last vertices of both. share is the light walk's first_share.
+bool join_vertices(std::span<const Vertex> light, double share, std::span<const Vertex> camera, double light_paths,
                    Candidate& out);
 /// t = 1: the light subpath's vertex s - 1 >= 0 and the lens.
 bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int s, double share, double light_paths,

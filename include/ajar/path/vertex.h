@@ -2,6 +2,7 @@
 // Leaves: its vertices, compact, in storage that a thread keeps; what joining and MIS need is on the vertex.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "ajar/field/guide.h"
@@ -41,6 +42,8 @@ struct Subpath {
     return vertices[size_t(n++)];
   }
   Vertex& operator[](int i) { return vertices[size_t(i)]; }
+  /// The first so many.
+  std::span<const Vertex> first(int count) const { return {vertices.data(), size_t(count)}; }
   const Vertex& operator[](int i) const { return vertices[size_t(i)]; }
 };
 
