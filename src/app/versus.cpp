@@ -47,7 +47,8 @@ Versus run_versus(const Scene& scene, const Accel& accel, RenderOptions options,
 
 std::string describe(const Versus& v, const RenderState& done) {
   const double left = estimate_error(done.film).relmse_trimmed;
-  std::string line = fmt::format("error left after {}: relMSE ~ {:.3g}; ", clock_text(done.stats.seconds), left);
+  std::string line = fmt::format("error left after {}: relMSE ~ {:.3g} without the worst 0.1 %; ",
+                                 clock_text(done.stats.seconds), left);
   if (!(v.expected.relmse_trimmed < infinity))
     return line + fmt::format("{} had too little time to tell its own", v.integrator);
   return line + fmt::format("{} would have left ~ {:.3g}, {:.2g} times as much (from {} of it)", v.integrator,

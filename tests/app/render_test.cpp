@@ -109,6 +109,7 @@ TEST_F(Render, VersusTellsWhatAnotherLeaves) {
   const double spent = json["cpu_seconds"]["trace"], other = v["cpu_seconds"];
   EXPECT_GE(spent, 0.5);
   EXPECT_GE(other, spent / 9);
+  EXPECT_LT(other, spent / 4);
   EXPECT_LT(spent + other, 0.9) << "both together take the budget, and a batch";
   EXPECT_GE(v["spp"].get<double>(), 2);
   const double found = v["estimated_relmse_trimmed"], expected = v["expected_relmse_trimmed"];

@@ -94,7 +94,8 @@ function fill_fields(methods, box) {
 /** A row for each strategy, the methods side by side; means over the seeds. */
 function fill_shares(scene, methods, box) {
   const all_of = ({runs}) => runs.flatMap(run => run.strategies ?? []);
-  const keys = [...new Set(methods.flatMap(all_of).map(({s, t}) => `${s} ${t}`))].map(key => key.split(' ').map(Number));
+  const keys =
+      [...new Set(methods.flatMap(all_of).map(({s, t}) => `${s} ${t}`))].map(key => key.split(' ').map(Number));
   keys.sort(([s, t], [s2, t2]) => s + t - s2 - t2 || s - s2);
   const name = x => x < 8 ? String(x) : '8+';
   const pixels = scene.width * scene.height;
@@ -117,26 +118,19 @@ function fill_shares(scene, methods, box) {
       el('div', {class: 'wide'},
          table(
              'shares',
-             [
-               's, t',
-               ...methods.flatMap(
-                   ({name}) =>
-                       [[swatch(name), `${name}: light`], 'tracing time', 'shadow rays per sample', 'of them see'])
-             ],
-             keys.map(
-                 ([s, t]) =>
-                     [`${name(s)}, ${name(t)}`, ...methods.flatMap(method => of_method(method, s, t))]))),
+             ['s, t', ...methods.flatMap(({name}) => [[swatch(name), `${name}: light`], 'time', 'rays', 'see'])],
+             keys.map(([s, t]) => [`${name(s)}, ${name(t)}`, ...methods.flatMap(method => of_method(method, s, t))]))),
       el('p', {class: 'note'},
-         'Joins of s light and t camera vertices: their share of the light in the image and of the time of tracing. ' +
-             'Time is of one sample in 256, timed part by part; walks and learning have the rest.'));
+         'Joins of s light and t camera vertices: their share of the light in the image, of the time of tracing, ' +
+             'their shadow rays per sample, and how many of these see the other end. ' +
+             'One sample in 256 is timed, part by part; walks and learning have the rest of the time.'));
 }
 
 function write_strategies(scene, parent) {
   const methods = scene.methods ?? [];
   const with_shares = methods.filter(({runs}) => runs?.some(({strategies}) => strategies?.length));
   if (with_shares.length)
-    parent.append(
-        drawer('What strategies bring and cost', 'share', box => fill_shares(scene, with_shares, box)));
+    parent.append(drawer('What strategies bring and cost', 'share', box => fill_shares(scene, with_shares, box)));
   const with_techniques =
       methods.filter(({techniques}) => techniques?.some(({weighted}) => weighted && files[weighted]));
   const with_fields = methods.filter(({fields}) => fields?.some(({image}) => image && files[image]));
