@@ -5,68 +5,90 @@
 namespace ajar {
 namespace {
 
-constexpr size_t most_candidates = 32;
-
-uint32_t region_of(const Guide& guide) { return guide.cell == none ? no_region : guide.fields->cells[guide.cell].region; }
+uint32_t region_of(const Guide& guide) {
+  return guide.cell == none ? no_region : guide.fields->cells[guide.cell].region;
+}
 
 // 1 / own density, in units of the density with which a cosine lobe at the other end would find the vertex.
 float near_of(const Vertex& v, double inner) { return float(inv_pi / std::max(inner * v.own, 1e-30)); }
 
-// What a join brings, up to a factor that all candidates of a camera vertex share: unoccluded, both ends taken for
-// diffuse, with the weight against a camera subpath that finds the light vertex, or a light subpath the camera's. (J1)
-float expected(const LightStore::Place& at, const Vertex& c, float near, bool opaque, int most) {
-  const Vec3 between = c.p - at.p;
-  const float d2 = length2(between), cos_a = glm::dot(at.n, between), cos_c = -glm::dot(c.guide.frame.n, between);
-  if (at.s > most || !(d2 > 0) || (at.opaque && !(cos_a > 0)) || (opaque && !(cos_c > 0))) return 0;
-  const float g = std::max(std::abs(cos_a * cos_c) / sqr(d2), 1e-12f / d2);
-  return at.flux * g / (1 + g * (at.near + near));
+// Luminance that a vertex scatters, never nothing: narrow lobes are more than their albedo on average.
+float flux_of(const Vertex& v) {
+  return luminance(v.beta) * inv_pi * std::max(luminance(albedo(v.guide.bsdf, v.guide.wo_local)), 0.02f);
+}
+
+void put(LightStore::Block& b, uint32_t i, const Vertex& v, const LightStore::Place& at, double inner) {
+  const Vec3 n = v.guide.frame.n;
+  b.x[i] = v.p.x, b.y[i] = v.p.y, b.z[i] = v.p.z;
+  b.nx[i] = n.x, b.ny[i] = n.y, b.nz[i] = n.z;
+  b.flux[i] = flux_of(v);
+  b.near[i] = near_of(v, inner);
+  b.behind[i] = v.guide.bsdf.opaque ? 0.0f : -1.0f;
+  b.region[i] = at.region, b.s[i] = at.s;
+}
+
+using Values = std::array<float, LightStore::width>;
+
+// What joins bring, up to a factor that all of a camera vertex share: unoccluded, both ends taken for diffuse, with the
+// weight against the camera subpath that finds the light vertex, or the light subpath that finds the camera's. (J1)
+void expect(const LightStore::Block& b, const Vertex& c, float near, int most, Values& out) {
+  const Vec3 p = c.p, n = c.guide.frame.n;
+  const float behind = c.guide.bsdf.opaque ? 0.0f : -1.0f;
+  for (uint32_t i = 0; i < LightStore::width; ++i) {
+    const float x = p.x - b.x[i], y = p.y - b.y[i], z = p.z - b.z[i];
+    const float d2 = std::max(x * x + y * y + z * z, 1e-30f);
+    const float cos_a = b.nx[i] * x + b.ny[i] * y + b.nz[i] * z, cos_c = -(n.x * x + n.y * y + n.z * z);
+    const float faces = std::max(cos_a, b.behind[i] * cos_a) * std::max(cos_c, behind * cos_c);
+    const float g = faces / d2 / d2;
+    out[i] = b.s[i] <= most ? b.flux[i] * g / (1 + g * (b.near[i] + near)) : 0;
+  }
 }
 
 }  // namespace
 
-void clear(LightStore& store) { store.vertices.clear(), store.places.clear(), store.paths = 0; }
+void clear(LightStore& store) { store.vertices.clear(), store.places.clear(), store.blocks.clear(), store.paths = 0; }
 
-void add(LightStore& store, const Subpath& light, double share, double inner) {
+void add(LightStore& store, const Subpath& light, double share) {
   ++store.paths;
   const uint32_t first = uint32_t(store.vertices.size());
   int last = 0;
   for (int s = 2; s <= light.n; ++s) {
     const Vertex& v = light[s - 1];
-    if (!connectable(v.guide)) continue;
-    const float flux = luminance(v.beta) * inv_pi * std::max(luminance(albedo(v.guide.bsdf, v.guide.wo_local)), 0.02f);
-    if (!(flux > 0)) continue;
-    store.places.push_back({v.p, flux, v.guide.frame.n, near_of(v, inner), region_of(v.guide), first, s, float(share),
-                            v.guide.bsdf.opaque});
+    if (!connectable(v.guide) || !(flux_of(v) > 0)) continue;
+    store.places.push_back({first, s, region_of(v.guide), share});
     last = s;
   }
   store.vertices.insert(store.vertices.end(), light.vertices.begin(), light.vertices.begin() + last);
 }
 
+void finish(LightStore& store, double inner) {
+  const uint32_t all = uint32_t(store.places.size()), n = (all + LightStore::width - 1) / LightStore::width;
+  store.blocks.assign(n, {});
+  for (uint32_t i = 0; i < all; ++i) {
+    const LightStore::Place& at = store.places[i];
+    put(store.blocks[i % n], i / n, store.subpath(at).back(), at, inner);
+  }
+}
+
 bool choose(const LightStore& store, const Vertex& camera, double inner, int most, Sampler& sampler, StoreChoice& out) {
   const Vec2 u = sampler.next2();
-  const size_t all = store.places.size(), n = std::min(all, most_candidates);
+  const uint32_t n = uint32_t(store.blocks.size());
   if (n == 0) return false;
-  const float near = near_of(camera, inner);
-  const uint32_t region = region_of(camera.guide);
-  std::array<float, most_candidates> sums;
-  const auto candidate = [&](size_t i) -> const LightStore::Place& {
-    return store.places[std::min(size_t((float(i) + u.x) * (float(all) / float(n))), all - 1)];
-  };
+  const uint32_t block = std::min(uint32_t(u.x * float(n)), n - 1);
+  const LightStore::Block& b = store.blocks[block];
+  Values values;
+  expect(b, camera, near_of(camera, inner), most, values);
+  if (const uint32_t region = region_of(camera.guide); region != no_region)
+    for (uint32_t i = 0; i < LightStore::width; ++i) values[i] *= chance(camera.guide.fields->views, region, b.region[i]);
   float sum = 0;
-  for (size_t i = 0; i < n; ++i) {
-    const LightStore::Place& at = candidate(i);
-    const float value = expected(at, camera, near, camera.guide.bsdf.opaque, most);
-    if (value > 0)
-      sum += value * (camera.guide.fields ? chance(camera.guide.fields->views, region, at.region) : 1);
-    sums[i] = sum;
-  }
+  Values sums;
+  for (uint32_t i = 0; i < LightStore::width; ++i) sums[i] = sum += values[i];
   if (!(sum > 0) || !(sum < infinity)) return false;
-  size_t i = 0;
-  while (i + 1 < n && !(u.y * sum < sums[i])) ++i;
-  const float mine = sums[i] - (i > 0 ? sums[i - 1] : 0);
-  if (!(mine > 0)) return false;
-  out.place = &candidate(i);
-  out.weight = float(double(all) / (double(n) * store.paths)) * sum / mine;
+  uint32_t i = 0;
+  while (i + 1 < LightStore::width && !(u.y * sum < sums[i])) ++i;
+  if (!(values[i] > 0)) return false;
+  out.place = &store.places[i * n + block];
+  out.weight = float(double(n) / store.paths) * sum / values[i];
   return true;
 }
 

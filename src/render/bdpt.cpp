@@ -182,7 +182,7 @@ void trace_light_half(const Job& job, Sample& sample, Scratch& scratch) {
   Work work{job, sample, scratch};
   scratch.light.n = 0;
   trace_light_subpath(work);
-  add(scratch.store, scratch.light, work.light_share, job.walk.inner_share);
+  add(scratch.store, scratch.light, work.light_share);
   charge(scratch, scratch.ledger->light_ticks);
   if (!sample.teaches) return;
   record_subpath(*job.walk.fields, *job.training, scratch.sightings, scratch.light, Side::light);

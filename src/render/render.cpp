@@ -90,8 +90,10 @@ void trace_chunk(const Job& job, Trace trace, Film& film, uint32_t chunk, Scratc
   for (int y = y0; y < y1; ++y)
     for (int x = x0; x < x1; ++x) scratch.samples.push_back({make_sample(job, film, x, y)});
   clear(scratch.store);
-  if (job.stored)
+  if (job.stored) {
     for (auto& [sample, splat] : scratch.samples) splat = trace_half(job, sample, scratch);
+    finish(scratch.store, job.walk.inner_share);
+  }
   for (auto& [sample, splat] : scratch.samples) trace_pixel(job, trace, film, sample, splat, scratch);
 }
 
