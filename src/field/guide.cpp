@@ -14,6 +14,13 @@ float adjoint(const Guide& g, const Vec3& wi, const Vec3& local, Mode mode) {
   return g.adjoint * std::abs(glm::dot(g.ng, wi) / local.z);  // (A1)
 }
 
+// What a boundary over a base takes of the field's part: three times what it reflects at right angles, so that its own
+// lobe, which reflects more at others, is never starved. The same for both directions of a path.
+float boundary(float share, float ior) {
+  const float reflected = sqr((ior - 1) / (ior + 1)), s = share * reflected;
+  return std::min(3 * s / std::max(s + (1 - share) * (1 - reflected), 1e-6f), 1.0f);
+}
+
 // How far a field of incident light or importance alone, without the bsdf, is a good guide: not for narrow lobes.
 float breadth(const Lobe& lobe) {
   const auto rough = [](float alpha) { return std::clamp((alpha - 0.1f) * 2.5f, 0.0f, 1.0f); };
@@ -22,9 +29,9 @@ float breadth(const Lobe& lobe) {
     case LobeKind::roughdiffuse:
       return 1;
     case LobeKind::plastic:
-      return 1 - lobe.plastic.share;
+      return 1 - boundary(lobe.plastic.share, lobe.plastic.ior);
     case LobeKind::roughplastic:
-      return 1 - lobe.roughplastic.share * (1 - rough(lobe.roughplastic.alpha));
+      return 1 - boundary(lobe.roughplastic.share, lobe.roughplastic.ior) * (1 - rough(lobe.roughplastic.alpha));
     case LobeKind::roughconductor:
       return rough(std::min(lobe.roughconductor.facets.alpha_u, lobe.roughconductor.facets.alpha_v));
     case LobeKind::phong:

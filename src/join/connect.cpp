@@ -5,8 +5,8 @@
 namespace ajar {
 namespace {
 
-// The end of a subpath at its last vertex, not its first, from which the other side's vertex lies in direction w: other is what
-// the other side's density becomes here, reverse the density of going back to the vertex before.
+// The end of a subpath at its last vertex, not its first, from which the other side's vertex lies in direction w: other
+// is what the other side's density becomes here, reverse the density of going back to the vertex before.
 End end_at(std::span<const Vertex> subpath, double other, double reverse) {
   const Vertex& v = subpath.back();
   const Vertex& before = subpath[subpath.size() - 2];

@@ -4,8 +4,8 @@ namespace ajar {
 namespace {
 
 // Sum over the strategies that take vertices away from this end, relative to "this end keeps all n with ordinary
-// densities". first and inner are the raised shares of the strategies that leave one vertex and more; the ratios of density
-// are raised here.
+// densities". first and inner are the raised shares of the strategies that leave one vertex and more; the ratios of
+// density are raised here.
 double handed_over(Heuristic h, const End& end, double first, double inner) {
   if (end.n == 0) return 0;
   const double last = raise(h, ratio(end.other, end.own));

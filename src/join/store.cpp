@@ -79,7 +79,8 @@ bool choose(const LightStore& store, const Vertex& camera, double inner, int mos
   Values values;
   expect(b, camera, near_of(camera, inner), most, values);
   if (const uint32_t region = region_of(camera.guide); region != no_region)
-    for (uint32_t i = 0; i < LightStore::width; ++i) values[i] *= chance(camera.guide.fields->views, region, b.region[i]);
+    for (uint32_t i = 0; i < LightStore::width; ++i)
+      values[i] *= chance(camera.guide.fields->views, region, b.region[i]);
   float sum = 0;
   Values sums;
   for (uint32_t i = 0; i < LightStore::width; ++i) sums[i] = sum += values[i];

@@ -133,7 +133,8 @@ void join_stored(Work& work) {
     c.value *= choice.weight;
     const bool seen = add_if_visible(work, c, at.s, camera.n);
     if (work.sample.teaches && v.guide.cell != none)
-      record_join(job.walk.fields->views, job.training->views, v.guide.fields->cells[v.guide.cell].region, at.region, seen);
+      record_join(job.walk.fields->views, job.training->views, v.guide.fields->cells[v.guide.cell].region, at.region,
+                  seen);
   }
   charge_join(work.scratch, at.s, camera.n);
 }
@@ -152,7 +153,8 @@ void join_all(Work& work, const Surface& surface) {
   Candidate c;
   for (int s = 2; s <= most; ++s)
     if (connectable(light[s - 1].guide)) {
-      if (join_vertices(light.first(s), work.light_share, camera.first(t), job.walk.light_paths, c)) add_if_visible(work, c, s, t);
+      if (join_vertices(light.first(s), work.light_share, camera.first(t), job.walk.light_paths, c))
+        add_if_visible(work, c, s, t);
       charge_join(work.scratch, s, t);
     }
 }

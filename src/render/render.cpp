@@ -31,10 +31,6 @@ const Integrator& find_integrator(const std::string& name) {
   throw Error(fmt::format("--integrator {}: unknown; known are {}", name, fmt::join(integrator_names(), ", ")));
 }
 
-// Guided subpaths that end on two sides of a wall rarely see each other; densities do not know, so weights trust these
-// joins less than what next-event estimation and the lens bring.
-constexpr double guided_inner_share = 0.3;
-
 // Chunks traced between two merges: bounds the memory of splats and the time to the next look at the clock.
 constexpr uint32_t batch_chunks = 256;
 
@@ -189,8 +185,8 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   if (find_integrator(options.integrator).guided) {
     job.learning = &state.learning, job.training = &state.learning.training;
     job.walk.fields = &state.learning.fields;
-    job.walk.inner_share = film.splats ? (getenv("INNER") ? atof(getenv("INNER")) : guided_inner_share) : 0;
-    job.stored = film.splats && !getenv("NOSTORE");
+    job.walk.inner_share = film.splats ? 1 : 0;
+    job.stored = film.splats;
   }
   double wall0 = 0, cpu0 = 0;
   const auto start_clocks = [&] {

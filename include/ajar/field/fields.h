@@ -33,8 +33,8 @@ struct Field {
 
 struct Cell {
   CellKey key = 0;
-  Frame frame;     ///< its strata are about frame.n
-  float seen = 0;  ///< vertices since it was made
+  Frame frame;                  ///< its strata are about frame.n
+  float seen = 0;               ///< vertices since it was made
   uint32_t region = no_region;  ///< the top-level cell that it is part of, by number (views.h)
 };
 

@@ -21,7 +21,7 @@ struct ViewTallies {
   std::vector<uint32_t> counts;
 };
 
-inline constexpr uint32_t most_regions = 1024, no_region = ~0u;
+inline constexpr uint32_t most_regions = 512, no_region = ~0u;
 
 inline float chance(const Views& v, uint32_t a, uint32_t b) {
   return a < v.regions && b < v.regions ? v.chance[std::size_t(a) * v.regions + b] : 1;

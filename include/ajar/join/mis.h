@@ -23,7 +23,7 @@ struct End {
 struct Shares {
   double light_first = 1;   ///< density of next-event estimation over that of emission for a_0
   double camera_first = 1;  ///< number of light paths that one camera sample's film sees: light paths of a pass
-  double inner = 1;         ///< what a join of two vertices that both were walked to counts for, as a factor on its density
+  double inner = 1;  ///< what a join of two vertices that both were walked to counts for, as a factor on its density
 };
 
 /// Weight of the strategy that joins light (s = light.n >= 0) and camera (t = camera.n >= 1) vertices. For s = 0 the

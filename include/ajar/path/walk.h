@@ -2,8 +2,6 @@
 // Leaves: the subpath, vertex by vertex, with throughput, densities of both sides and MIS prefix sums.
 #pragma once
 
-#include <cstdlib>
-
 #include "ajar/accel/accel.h"
 #include "ajar/core/sampler.h"
 #include "ajar/path/prefix.h"
@@ -24,8 +22,7 @@ struct WalkOptions {
   int max_edges = 1 << 20;  ///< of a whole path from light to camera
   int roulette_from = 5;    ///< edges that are traced without roulette
   Heuristic heuristic = Heuristic::power;
-  float window = getenv("WIN") ? atof(getenv("WIN")) : 5;                ///< guided subpaths that promise less than 1 / window of their start face roulette
-  float window_light = getenv("WINL") ? atof(getenv("WINL")) : 5, fl = getenv("FLO") ? atof(getenv("FLO")) : 0.05;
+  float window = 5;                ///< guided subpaths that promise less than 1 / window of their start face roulette
   int sure_vertices = 64;          ///< beyond, no subpath is sure to go on
   const Fields* fields = nullptr;  ///< guide the subpaths; null: unguided
   double inner_share = 1;          ///< Shares::inner of all joins (join/mis.h)
@@ -77,7 +74,7 @@ inline float keep(const WalkOptions& options, const Guide& guide, int vertices, 
     const Promise p = promise(guide, beta);
     if (!(promised > 0)) promised = p.all;
     const float most = vertices > options.sure_vertices ? 0.95f : 1;
-    if (p.beyond > 0 && promised > 0) return std::clamp((guide.side == Side::light ? options.window_light : options.window) * p.beyond / promised, options.fl, most);  // (G6)
+    if (p.beyond > 0 && promised > 0) return std::clamp(options.window * p.beyond / promised, 0.05f, most);  // (G6)
   }
   return vertices > options.roulette_from ? std::min(max_component(survival), 0.95f) : 1;
 }
