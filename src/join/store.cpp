@@ -30,7 +30,7 @@ void put(LightStore::Block& b, uint32_t i, const Vertex& v, const LightStore::Pl
 using Values = std::array<float, LightStore::width>;
 
 // What joins bring, up to a factor that all of a camera vertex share: unoccluded, both ends taken for diffuse, with the
-// weight against the camera subpath that finds the light vertex, or the light subpath that finds the camera's. (J1)
+// weight against the camera subpath that finds the light vertex, or the light subpath that finds the camera's.
 void expect(const LightStore::Block& b, const Vertex& c, float near, int most, Values& out) {
   const Vec3 p = c.p, n = c.guide.frame.n;
   const float behind = c.guide.bsdf.opaque ? 0.0f : -1.0f;
@@ -40,7 +40,7 @@ void expect(const LightStore::Block& b, const Vertex& c, float near, int most, V
     const float cos_a = b.nx[i] * x + b.ny[i] * y + b.nz[i] * z, cos_c = -(n.x * x + n.y * y + n.z * z);
     const float faces = std::max(cos_a, b.behind[i] * cos_a) * std::max(cos_c, behind * cos_c);
     const float g = faces / d2 / d2;
-    out[i] = b.s[i] <= most ? b.flux[i] * g / (1 + g * (b.near[i] + near)) : 0;
+    out[i] = b.s[i] <= most ? b.flux[i] * g / (1 + g * (b.near[i] + near)) : 0;  // (J1)
   }
 }
 

@@ -6,6 +6,8 @@ namespace ajar {
 namespace {
 
 uint32_t youth(const Learning& l) { return l.train > 0 ? l.train : young_generations; }
+// Passes whose fields knew too little for the image. Training passes are not for the image in any case.
+uint32_t blind(const Learning& l) { return l.train > 0 ? l.train : blind_generations; }
 bool is_young(const Learning& l) { return l.fields.generation < youth(l); }
 bool is_frozen(const Learning& l) { return l.train > 0 && !is_young(l); }
 
@@ -54,7 +56,7 @@ void end_pass(Learning& l, const LearnOptions& options, Film& film) {
   l.training = start_training(l.fields);
   l.sightings.clear();
   l.passes = 0;
-  if (l.fields.generation == youth(l)) drop_passes(film);
+  if (l.fields.generation == blind(l)) drop_passes(film);
 }
 
 }  // namespace ajar

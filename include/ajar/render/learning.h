@@ -18,10 +18,10 @@ struct Learning {
   uint32_t first = 0;   ///< number of the render's first pass; even; not 0 where it goes on from stored fields
 };
 
-/// After each of the first passes the fields are learned from all paths, and what these passes saw through young fields
-/// is dropped from the image at the end of them; from then on one path in rare_records is recorded, and passes between
-/// lessons double.
-inline constexpr uint32_t young_generations = 8, rare_records = 8;
+/// After each of the first passes, young_generations of them, the fields are learned from all paths; from then on one
+/// path in rare_records is recorded, and passes between lessons double. What the first blind_generations saw, through
+/// fields that knew next to nothing, is dropped from the image.
+inline constexpr uint32_t young_generations = 8, blind_generations = 4, rare_records = 8;
 
 Learning start_learning(const Scene& scene, const Film& film, const LearnOptions& options);
 /// Puts stored fields in place of those that know nothing. Passes are numbered on from those that the fields were
@@ -35,7 +35,7 @@ inline uint32_t dropped_passes(const Learning& learning, const Film& film) { ret
 bool in_training(const Learning& learning);
 /// Whether the subpaths of this pixel are recorded in this pass.
 bool is_recorded(const Learning& learning, uint64_t pixel, uint32_t pass);
-/// Call after every finished pass. Drops the young passes from the film when the time has come.
+/// Call after every finished pass. Drops the blind passes from the film when the time has come.
 void end_pass(Learning& learning, const LearnOptions& options, Film& film);
 
 }  // namespace ajar
