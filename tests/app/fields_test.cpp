@@ -72,7 +72,7 @@ TEST_F(FieldsUsed, AreRecorded) {
   EXPECT_EQ(json["options"]["guide"], "both");
   EXPECT_EQ(json["options"]["field_memory"], 8 << 20);
   EXPECT_EQ(json["options"]["save_fields"], fields);
-  EXPECT_EQ(json["fields"]["dropped_passes"], 8);
+  EXPECT_EQ(json["fields"]["dropped_passes"], 4);
   EXPECT_GE(json["fields"]["generation"], 8);
   EXPECT_GT(json["fields"]["cells"], 10);
   EXPECT_GE(json["fields"]["nodes"]["q"], json["fields"]["cells"]);

@@ -182,6 +182,7 @@ TEST(Texture, MeshColoursInterpolate) {
   at.bary = {0.25f, 0.5f};
   scene.textures.emplace_back();
   scene.textures[0].kind = TextureKind::mesh_attribute;
+  scene.textures[0].attribute = "vertex_color";
   Slot slot;
   slot.texture = 0;
   EXPECT_EQ(eval(scene, slot, at), Rgb(0.25f, 0.25f, 0.5f));
