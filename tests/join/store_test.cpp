@@ -21,6 +21,9 @@ Scene scaled_stage(float scale) {
   add_mesh(scene, kit::globe({0.3f, -0.5f, 0.1f}, 0.4f, 8), add_material(scene, glossy));
   for (Mesh& mesh : scene.meshes)
     for (Vec3& p : mesh.positions) p *= scale;
+  // Next-event estimation finds a ball's points by another density than emission does.
+  add_area_light(scene, add_sphere(scene, Vec3(-0.5f, 0.2f, 0.1f) * scale, 0.2f * scale, add_diffuse(scene, Rgb(0.5f))),
+                 Rgb(30));
   set_camera(scene, Vec3(0, 0, 4.2f) * scale, Vec3(0), 36, 8, 8);
   finish(scene);
   return scene;
@@ -271,6 +274,7 @@ TEST(LightStore, JoinsAsTheSubpathItself) {
   Subpath light;
   Surface surface;
   LightStore store;
+  int counts = 0;
   const Subpath camera = room.cameras(1)[0];
   for (uint32_t i = 0; i < 40; ++i) {
     Sampler sampler = make_sampler(SamplerKind::independent, 5, Side::light, i, 0);
@@ -292,12 +296,12 @@ TEST(LightStore, JoinsAsTheSubpathItself) {
       ASSERT_LT(place, store.places.size());
       const LightStore::Place& at = store.places[place++];
       EXPECT_EQ(at.s, s);
-      EXPECT_NE(at.share, 1) << "a test where it counts";
+      counts += std::abs(at.share - 1) > 0.1;
       EXPECT_EQ(weigh(store.subpath(at), at.share), weigh(light.first(s), walk.first_share));
     }
     EXPECT_EQ(place, store.places.size());
   }
-  EXPECT_GT(store.places.size(), 40u);
+  EXPECT_GT(counts, 20) << "places whose share is not 1";
 }
 
 }  // namespace
