@@ -43,7 +43,7 @@ size_t bytes(const Fields& f) {
     return x.cells.size() * sizeof(FieldCell) + x.nodes.size() * (sizeof(StrataNode) + 32 * sizeof(float));
   };
   return f.table.slots.size() * sizeof(CellTable::Slot) + f.table.probes.size() * sizeof(Probe) +
-         f.cells.size() * sizeof(Cell) + 3 * f.views.tried.size() * sizeof(float) + of(f.q) + of(f.w);
+         f.cells.size() * sizeof(Cell) + bytes(f.views) + of(f.q) + of(f.w);
 }
 
 }  // namespace ajar

@@ -107,13 +107,13 @@ void read(Reader& r, Structure structure, size_t cells, Field& f) {
     r.require(claim(f.nodes, c.root, claimed) && (structure == Structure::adaptive || is_patches(f.nodes, c.root)));
 }
 
-void read(Reader& r, Views& v) {
+// regions: of the fields. Joins that are free are among those that were tried.
+void read(Reader& r, uint32_t regions, Views& v) {
   r.value(v.regions);
   r.array(v.tried), r.array(v.seen);
   const size_t size = size_t(v.regions) * v.regions;
-  r.require(v.regions <= most_regions && v.tried.size() == size && v.seen.size() == size &&
-            std::all_of(v.tried.begin(), v.tried.end(), is_amount) &&
-            std::all_of(v.seen.begin(), v.seen.end(), is_amount));
+  r.require(v.regions <= std::min(regions, most_regions) && v.tried.size() == size && v.seen.size() == size);
+  for (size_t i = 0; i < size; ++i) r.require(is_amount(v.tried[i]) && v.seen[i] >= 0 && v.seen[i] <= v.tried[i]);
   v = learn_views(v, start_tallies(v), v.regions, 1);
 }
 
@@ -182,7 +182,7 @@ void read(Reader& r, Fields& fields) {
   read(r, fields.structure, fields.cells.size(), fields.q);
   read(r, fields.structure, fields.cells.size(), fields.w);
   r.value(fields.regions);
-  read(r, fields.views);
+  read(r, fields.regions, fields.views);
 }
 
 void write(Writer& w, const Training& training) {

@@ -48,6 +48,13 @@ struct Lesson {
   Fields learned(const LearnOptions& options = {}) const { return learn(fields, training, {}, 1, options); }
 };
 
+// Strata stay whole, however much of the field they hold.
+LearnOptions whole_strata() {
+  LearnOptions o;
+  o.divide_stratum = 1;
+  return o;
+}
+
 float mean_of(const Field& f, int stratum) { return f.mean[16 * size_t(f.cells[0].root) + size_t(stratum)]; }
 float weight_of(const Field& f, int stratum) { return f.weight[16 * size_t(f.cells[0].root) + size_t(stratum)]; }
 
@@ -70,7 +77,7 @@ TEST(Learn, EvidenceMovesItsStratumAlone) {
     ASSERT_EQ(blank.cells.size(), 1u);
     Lesson first(blank, side);
     first.add(towards(5), 3, 2);
-    const Fields a = first.learned();
+    const Fields a = first.learned(whole_strata());
     EXPECT_FLOAT_EQ(mean_of(a.of(side), 5), 3);
     EXPECT_FLOAT_EQ(weight_of(a.of(side), 5), 2);
     for (int i = 0; i < 16; ++i) EXPECT_EQ(mean_of(a.of(side), i), i == 5 ? 3 : 0) << i;
@@ -80,15 +87,15 @@ TEST(Learn, EvidenceMovesItsStratumAlone) {
     // Half of the older weight 2 is kept: 3 + (5 - 3) * 1 / (1 + 1).
     Lesson second(a, side);
     second.add(towards(5), 5, 1);
-    const Fields b = second.learned();
+    const Fields b = second.learned(whole_strata());
     EXPECT_FLOAT_EQ(mean_of(b.of(side), 5), 4);
     EXPECT_FLOAT_EQ(weight_of(b.of(side), 5), 2);
 
     // Records of one lesson are averaged by weight: (1 * 7 + 3 * 1) / 4 = 2.5; 4 + (2.5 - 4) * 4 / (1 + 4).
     Lesson third(b, side);
     third.add(towards(5, {0.1f, 0.9f}), 7, 1), third.add(towards(5, {0.9f, 0.1f}), 1, 3);
-    EXPECT_FLOAT_EQ(mean_of(third.learned().of(side), 5), 2.8f);
-    EXPECT_EQ(third.learned().generation, blank.generation + 3);
+    EXPECT_FLOAT_EQ(mean_of(third.learned(whole_strata()).of(side), 5), 2.8f);
+    EXPECT_EQ(third.learned(whole_strata()).generation, blank.generation + 3);
   }
 }
 
@@ -96,10 +103,10 @@ TEST(Learn, ZerosPullDownAndSilenceDoesNot) {
   const Fields blank = one_cell();
   Lesson first(blank);
   first.add(towards(9), 3, 2), first.add(towards(2), 1, 2);
-  const Fields a = first.learned();
+  const Fields a = first.learned(whole_strata());
   Lesson second(a);
   second.add(towards(9), 0, 3);
-  const Fields b = second.learned();
+  const Fields b = second.learned(whole_strata());
   EXPECT_FLOAT_EQ(mean_of(b.q, 9), 0.75f);  // 3 + (0 - 3) * 3 / (1 + 3)
   EXPECT_FLOAT_EQ(mean_of(b.q, 2), 1);
   EXPECT_FLOAT_EQ(weight_of(b.q, 2), 2) << "nothing new was seen there, nothing is forgotten";
@@ -159,7 +166,7 @@ TEST(Learn, HeavyStrataDivideAndLightOnesJoin) {
   // Evidence goes to the part that it is for.
   Lesson part(a);
   part.add(towards(5, {0.9f, 0.9f}), 4, 0.5f);
-  const Fields p = part.learned();
+  const Fields p = part.learned(whole_strata());
   const uint32_t child = p.q.nodes[p.q.cells[0].root].child(5);
   EXPECT_FLOAT_EQ(p.q.mean[16 * child + 15], 2.5f);
   EXPECT_FLOAT_EQ(p.q.mean[16 * child + 14], 1);
@@ -175,10 +182,15 @@ TEST(Learn, HeavyStrataDivideAndLightOnesJoin) {
   EXPECT_FLOAT_EQ(weight_of(b.q, 5), 16 * 32.5f);
 }
 
+// Few records are made in narrow strata, and each weighs little: those that hold much of the field need less weight.
 TEST(Learn, LittleEvidenceDoesNotDivide) {
-  Lesson lesson(one_cell());
-  lesson.add(towards(5), 1, 7.9f);
-  EXPECT_EQ(lesson.learned().q.nodes.size(), 1u);
+  for (const bool divides : {false, true}) {
+    Lesson narrow(one_cell()), even(one_cell());
+    narrow.add(towards(5), 1, divides ? 1.0f : 0.5f);
+    EXPECT_EQ(narrow.learned().q.nodes.size() > 1, divides);
+    for (int i = 0; i < 16; ++i) even.add(towards(i), 1, divides ? 12.0f : 5.0f);
+    EXPECT_EQ(even.learned().q.nodes.size() > 1, divides);
+  }
 }
 
 TEST(Learn, DivisionEndsAtTheLastLevel) {
@@ -220,21 +232,21 @@ TEST(Learn, VisitedCellsDivideUnderTheMemoryLimit) {
   Lesson first(blank);
   first.add(towards(5), 3, 2);
   for (int i = 0; i < 300; ++i) record_visit(first.training.q, 0), record_visit(first.training.w, 0);
-  const Fields a = first.learned();
+  const Fields a = first.learned(whole_strata());
   EXPECT_EQ(find(a.table, somewhere, up).missing, 0u) << "600 are not enough";
   Lesson second(a);
   record_visit(second.training.w, 0);
-  const Fields b = second.learned();
+  const Fields b = second.learned(whole_strata());
   const CellKey part = find(b.table, somewhere, up).missing;
   ASSERT_NE(part, 0u);
   EXPECT_EQ(find(b.table, somewhere, up).cell, 0u) << "the whole answers until the part is known";
 
-  LearnOptions tight;
-  tight.memory = bytes(b) - 1;
+  LearnOptions tight = whole_strata();
+  tight.memory = bytes(b) - bytes(b.views) - 1;
   const Fields full = learn(b, start_training(b), seen(part, up, 4), 1, tight);
   EXPECT_EQ(full.cells.size(), 1u);
   EXPECT_EQ(find(full.table, somewhere, up).cell, 0u);
-  const Fields c = learn(b, start_training(b), seen(part, up, 4), 1, {});
+  const Fields c = learn(b, start_training(b), seen(part, up, 4), 1, whole_strata());
   ASSERT_EQ(c.cells.size(), 2u);
   EXPECT_EQ(find(c.table, somewhere, up).cell, 1u);
   const uint32_t root = c.q.cells[1].root;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "ajar/core/error.h"
@@ -43,6 +44,7 @@ Fields learned(const Scene& scene, int generations, Structure structure = Struct
         record(fields, fields.of(side), training.of(side), at.cell, w, w.x > 0.6f ? 5.0f : 0.01f, 1);
         record_direct(fields.of(side), training.of(side), at.cell, u.x);
       }
+      record_join(fields.views, training.views, fields.cells[at.cell].region, uint32_t(i) % 5, i % 3 == 0);
     }
     fields = learn(fields, training, sightings, 2000, options);
   }
@@ -86,6 +88,14 @@ TEST_P(StoredStructures, FieldsComeBack) {
   EXPECT_EQ(b.structure, GetParam());
   EXPECT_EQ(b.rule, Rule::returned);
   EXPECT_EQ(bytes(a), bytes(b));
+  EXPECT_EQ(a.regions, b.regions);
+  EXPECT_GT(a.views.regions, 4u);
+  EXPECT_LT(*std::min_element(a.views.chance.begin(), a.views.chance.end()), 0.8f) << "regions know something";
+  EXPECT_EQ(a.views.regions, b.views.regions);
+  EXPECT_EQ(a.views.tried, b.views.tried);
+  EXPECT_EQ(a.views.seen, b.views.seen);
+  EXPECT_EQ(a.views.chance, b.views.chance);
+  for (size_t i = 0; i < a.cells.size(); ++i) EXPECT_EQ(a.cells[i].region, b.cells[i].region);
   Sampler sampler = make_sampler(SamplerKind::independent, 1, Side::camera, 0, 0);
   int divided = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -208,6 +218,15 @@ TEST_F(Store, WhatCannotBeIsAnError) {
       {"unit of 0", [](Fields& f, uint32_t, uint32_t) { f.q.unit = 0; }},
       {"no width", [](Fields& f, uint32_t, uint32_t) { f.table.width = 0; }},
       {"origin of NaN", [](Fields& f, uint32_t, uint32_t) { f.table.origin.y = std::nanf(""); }},
+      {"region beyond the most", [](Fields& f, uint32_t i, uint32_t) { f.cells[i].region = most_regions; }},
+      {"cell of no region", [](Fields& f, uint32_t i, uint32_t) { f.cells[i].region = no_region; }},
+      {"views of more regions than there are", [](Fields& f, uint32_t, uint32_t) { f.regions = f.views.regions - 1; }},
+      {"views of fewer regions than they say", [](Fields& f, uint32_t, uint32_t) { --f.views.regions; }},
+      {"more views than there can be", [](Fields& f, uint32_t, uint32_t) { f.views.regions = ~0u; }},
+      {"joins tried less than never", [](Fields& f, uint32_t, uint32_t) { f.views.tried[1] = -1; }},
+      {"infinitely many joins", [](Fields& f, uint32_t, uint32_t) { f.views.tried[1] = infinity; }},
+      {"free joins of NaN", [](Fields& f, uint32_t, uint32_t) { f.views.seen[1] = std::nanf(""); }},
+      {"more joins free than tried", [](Fields& f, uint32_t, uint32_t) { f.views.seen[1] = f.views.tried[1] + 1; }},
   };
   for (const Case& c : cases) {
     Fields bad = good;
@@ -251,7 +270,7 @@ TEST_F(Store, PatchesThatCannotBeAreAnError) {
 TEST_F(Store, DepthOfTreesIsBounded) {
   for (const int levels : {most_levels, most_levels + 1}) {
     Fields f = start_fields(scene, 64);
-    f.cells.push_back({CellKey(1) << 59, {}, 0});
+    f.cells.push_back({CellKey(1) << 59, {}, 0, 0});
     for (Field* field : {&f.q, &f.w}) {
       field->cells.emplace_back().root = 0;
       for (int i = 0; i < levels; ++i) {
@@ -272,6 +291,7 @@ TEST_F(Store, TrainingMustFitTheFields) {
   const Fields small = learned(scene, 1), large = learned(scene, 3);
   Training training = start_training(large);
   training.q.value[17] = 5, training.w.visits[1] = 9;
+  record_join(large.views, training.views, 0, 1, true);
   const Sightings sightings = {{CellKey(2) << 59, {3, {1, 2, 3}}}, {CellKey(1) << 59, {1, {0, 0, 1}}}};
   write_file(path, kind, [&](Writer& w) { write(w, training), write(w, sightings); });
   Training back;
@@ -281,6 +301,7 @@ TEST_F(Store, TrainingMustFitTheFields) {
   r.finish();
   EXPECT_EQ(back.q.value, training.q.value);
   EXPECT_EQ(back.w.visits, training.w.visits);
+  EXPECT_EQ(back.views.counts, training.views.counts);
   ASSERT_EQ(seen.size(), 2u);
   EXPECT_EQ(seen.at(CellKey(2) << 59).normal, glm::i64vec3(1, 2, 3));
   Reader again(path, kind);

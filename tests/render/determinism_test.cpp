@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -52,6 +53,16 @@ void expect_same_tallies(const Tallies& a, const Tallies& b) {
   EXPECT_EQ(a.visits, b.visits);
 }
 
+void expect_same_views(const Fields& a, const Fields& b) {
+  ASSERT_EQ(a.cells.size(), b.cells.size());
+  for (size_t i = 0; i < a.cells.size(); ++i) EXPECT_EQ(a.cells[i].region, b.cells[i].region);
+  EXPECT_EQ(a.regions, b.regions);
+  EXPECT_EQ(a.views.regions, b.views.regions);
+  EXPECT_EQ(a.views.tried, b.views.tried);
+  EXPECT_EQ(a.views.seen, b.views.seen);
+  EXPECT_EQ(a.views.chance, b.views.chance);
+}
+
 void expect_same_learning(const Learning& a, const Learning& b) {
   EXPECT_EQ(a.passes, b.passes);
   EXPECT_EQ(a.first, b.first);
@@ -60,8 +71,10 @@ void expect_same_learning(const Learning& a, const Learning& b) {
   for (size_t i = 0; i < a.fields.cells.size(); ++i) EXPECT_EQ(a.fields.cells[i].key, b.fields.cells[i].key);
   expect_same_field(a.fields.q, b.fields.q);
   expect_same_field(a.fields.w, b.fields.w);
+  expect_same_views(a.fields, b.fields);
   expect_same_tallies(a.training.q, b.training.q);
   expect_same_tallies(a.training.w, b.training.w);
+  EXPECT_EQ(a.training.views.counts, b.training.views.counts);
   ASSERT_EQ(a.sightings.size(), b.sightings.size());
   for (const auto& [key, seen] : a.sightings) {
     ASSERT_TRUE(b.sightings.contains(key));
@@ -219,6 +232,8 @@ TEST(Determinism, GuidedCheckpointsAreTheStraightRun) {
   EXPECT_EQ(straight.film.dropped, blind_generations);
   EXPECT_EQ(straight.learning.fields.generation, young_generations + 1) << "learned once since";
   ASSERT_GT(straight.learning.fields.cells.size(), 10u);
+  const std::vector<float>& joins = straight.learning.fields.views.tried;
+  EXPECT_GT(std::count_if(joins.begin(), joins.end(), [](float n) { return n > 0; }), 10) << "regions were joined";
   const File file("ajar_guided");
   RenderState state = start_render(scene, o);
   for (const int looks : {3, 2, 11, 1, 9, 1000}) {
@@ -245,6 +260,7 @@ TEST(Determinism, StoredFieldsSpareTheYoungPasses) {
   go_on_from(load_fields(file.path, scene_key(scene)), o.learn, second.learning, second.film);
   expect_same_field(first.learning.fields.q, second.learning.fields.q);
   expect_same_field(first.learning.fields.w, second.learning.fields.w);
+  expect_same_views(first.learning.fields, second.learning.fields);
   render(scene, accel, o, second, always);
   EXPECT_EQ(second.film.passes, 9u);
   EXPECT_EQ(dropped_passes(second.learning, second.film), 0u);
@@ -367,18 +383,20 @@ TEST(Determinism, UnknownIntegratorIsAnError) {
 TEST(Determinism, WeightedTechniquesAddUpToTheImage) {
   const Scene scene = strip(false);  // its filter has negative lobes
   const Accel accel(scene);
-  RenderOptions o = options_of("bdpt", 4);
-  o.techniques = true;
-  const RenderState state = rendered(scene, accel, o);
-  const Picture image = develop(state.film);
-  double worst = 0, brightest = 0;
-  for (size_t i = 0; i < image.pixels.size(); ++i) {
-    double sum = 0;
-    for (const auto& [st, layer] : state.pyramid.layers) sum += layer.weighted[i / 3][glm::length_t(i % 3)];
-    worst = std::max(worst, std::abs(sum / state.film.passes - double(image.pixels[i])));
-    brightest = std::max(brightest, double(image.pixels[i]));
+  for (const char* integrator : {"bdpt", "guided-bdpt"}) {
+    RenderOptions o = options_of(integrator, 4);
+    o.techniques = true;
+    const RenderState state = rendered(scene, accel, o);
+    const Picture image = develop(state.film);
+    double worst = 0, brightest = 0;
+    for (size_t i = 0; i < image.pixels.size(); ++i) {
+      double sum = 0;
+      for (const auto& [st, layer] : state.pyramid.layers) sum += layer.weighted[i / 3][glm::length_t(i % 3)];
+      worst = std::max(worst, std::abs(sum / state.film.passes - double(image.pixels[i])));
+      brightest = std::max(brightest, double(image.pixels[i]));
+    }
+    EXPECT_LT(worst, 1e-5 * brightest) << integrator;
   }
-  EXPECT_LT(worst, 1e-5 * brightest);
 }
 
 TEST(Sampler, SequenceBeatsIndependentNumbers) {

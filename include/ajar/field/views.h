@@ -26,6 +26,7 @@ inline constexpr uint32_t most_regions = 512, no_region = ~0u;
 inline float chance(const Views& v, uint32_t a, uint32_t b) {
   return a < v.regions && b < v.regions ? v.chance[std::size_t(a) * v.regions + b] : 1;
 }
+inline std::size_t bytes(const Views& v) { return 3 * v.tried.size() * sizeof(float); }
 ViewTallies start_tallies(const Views& views);
 void record_join(const Views& views, ViewTallies& tallies, uint32_t a, uint32_t b, bool free);
 /// The next views, of so many regions: of older evidence the share kept counts.

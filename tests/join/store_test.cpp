@@ -1,0 +1,308 @@
+// One of all light vertices, drawn: with its weight it stands for all of them, whatever it is asked for.
+#include "ajar/join/store.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "kit/stage.h"
+#include "path/train.h"
+
+namespace ajar {
+namespace {
+
+constexpr int most_edges = 6;
+
+Scene scaled_stage(float scale) {
+  Scene scene = kit::stage(8);
+  Material glossy;
+  glossy.kind = MaterialKind::roughplastic;
+  add_mesh(scene, kit::globe({0.3f, -0.5f, 0.1f}, 0.4f, 8), add_material(scene, glossy));
+  for (Mesh& mesh : scene.meshes)
+    for (Vec3& p : mesh.positions) p *= scale;
+  // Next-event estimation finds a ball's points by another density than emission does.
+  add_area_light(scene, add_sphere(scene, Vec3(-0.5f, 0.2f, 0.1f) * scale, 0.2f * scale, add_diffuse(scene, Rgb(0.5f))),
+                 Rgb(30));
+  set_camera(scene, Vec3(0, 0, 4.2f) * scale, Vec3(0), 36, 8, 8);
+  finish(scene);
+  return scene;
+}
+
+// Each region sees some of the others always, some rarely, some never.
+Views made_up_views(const Fields& fields) {
+  Views views = fields.views;
+  ViewTallies tallies = start_tallies(views);
+  for (uint32_t a = 0; a < views.regions; ++a)
+    for (uint32_t b = a; b < views.regions; ++b)
+      for (uint32_t i = 0; i < 60; ++i) record_join(views, tallies, a, b, hash(a * 7919 + b, i) % 3 < hash(a, b) % 4);
+  return learn_views(views, tallies, fields.regions, 1);
+}
+
+struct Room {
+  Scene scene;
+  Accel accel;
+  Fields fields;
+  WalkOptions options;
+
+  explicit Room(float scale = 1, bool guided = false) : scene(scaled_stage(scale)), accel(scene) {
+    options.light_paths = 64;
+    if (!guided) return;
+    fields = train(scene, accel, 3, 1000);
+    fields.views = made_up_views(fields);
+    options.fields = &fields;
+  }
+  Room(const Room&) = delete;
+  Room& operator=(const Room&) = delete;
+
+  // So many light subpaths, and of their vertices so many at most; shares are those that light walks end with.
+  LightStore store(uint32_t paths, size_t most_places = ~size_t(0)) const {
+    LightStore out;
+    Subpath light;
+    Surface surface;
+    for (uint32_t i = 0; i < paths; ++i) {
+      Sampler sampler = make_sampler(SamplerKind::independent, 5, Side::light, i, 0);
+      Walk walk;
+      light.n = 0;
+      if (start_light(scene, options, sampler, light, walk))
+        while (light.n < most_edges && step(scene, accel, options, light, walk, surface) &&
+               scatter(options, sampler, light, walk)) {
+        }
+      add(out, light, walk.first_share);
+    }
+    out.places.resize(std::min(out.places.size(), most_places));
+    finish(out, 1);
+    return out;
+  }
+
+  // Camera subpaths that end at a vertex that can be joined.
+  std::vector<Subpath> cameras(size_t n) const {
+    std::vector<Subpath> out;
+    for (uint64_t i = 0; out.size() < n && i < 1000; ++i) {
+      Subpath camera;
+      trace_subpath(scene, accel, options, Side::camera, i, 77, 2 + int(i % 3), camera);
+      if (camera.n > 1 && connectable(camera[camera.n - 1].guide)) out.push_back(camera);
+    }
+    return out;
+  }
+};
+
+const Vertex& end_of(const Subpath& path) { return path[path.n - 1]; }
+size_t index_of(const LightStore& store, const StoreChoice& choice) {
+  return size_t(choice.place - store.places.data());
+}
+Sampler draws(uint64_t path) { return make_sampler(SamplerKind::independent, 9, Side::camera, path, 0); }
+
+// What a place brings to a camera subpath, but for visibility, times a factor of no meaning. Places of subpaths that
+// would be too long bring nothing.
+std::vector<double> brought(const LightStore& store, const Subpath& camera, int most) {
+  std::vector<double> out;
+  for (const LightStore::Place& at : store.places) {
+    Candidate c;
+    const bool joined = at.s <= most && join_vertices(store.subpath(at), at.share, camera.first(camera.n), 64, c);
+    out.push_back(joined ? double(luminance(c.value)) * (0.5 + double(hash(out.size(), 3) % 1000) / 1000) : 0);
+  }
+  return out;
+}
+
+// The mean of weight x g over draws is the sum of g over all places, over paths; and a weight wrong by a little would
+// be seen. Returns how many vertices had something to bring.
+int expect_unbiased(const LightStore& store, const std::vector<Subpath>& cameras, int most = most_edges,
+                    int n = 40'000) {
+  int lit = 0;
+  for (size_t k = 0; k < cameras.size(); ++k) {
+    const std::vector<double> g = brought(store, cameras[k], most);
+    const double expected = std::accumulate(g.begin(), g.end(), 0.0) / store.paths;
+    Sampler sampler = draws(k);
+    double sum = 0, squares = 0;
+    for (int i = 0; i < n; ++i) {
+      StoreChoice choice;
+      if (!choose(store, end_of(cameras[k]), 1, most, sampler, choice)) continue;
+      EXPECT_TRUE(choice.weight > 0 && choice.weight < infinity);
+      const double x = double(choice.weight) * g[index_of(store, choice)];
+      sum += x, squares += x * x;
+    }
+    const double mean = sum / n, error = std::sqrt(std::max(squares / n - mean * mean, 0.0) / n);
+    EXPECT_NEAR(mean, expected, 5 * error + 1e-4 * expected) << "camera vertex " << k;
+    if (!(expected > 0)) continue;
+    ++lit;
+    EXPECT_LT(5 * error, 0.2 * expected) << "too noisy to see a wrong weight";
+  }
+  return lit;
+}
+
+TEST(LightStore, StandsForAllPlaces) {
+  const Room room;
+  EXPECT_GT(expect_unbiased(room.store(64), room.cameras(12)), 8);
+}
+
+TEST(LightStore, StandsForAllPlacesWhateverViewsSay) {
+  const Room room(1, true);
+  ASSERT_GT(room.fields.views.regions, 4u);
+  EXPECT_GT(expect_unbiased(room.store(64), room.cameras(12)), 8);
+}
+
+// One place; a full block; one more, which makes two blocks of unequal number.
+TEST(LightStore, StandsForFewPlaces) {
+  const Room room;
+  for (const size_t places : {1u, 2u, 31u, 32u, 33u}) {
+    const LightStore store = room.store(64, places);
+    ASSERT_EQ(store.places.size(), places);
+    ASSERT_EQ(store.blocks.size(), (places + 31) / 32);
+    EXPECT_GT(expect_unbiased(store, room.cameras(6), most_edges, 20'000), 0) << places;
+  }
+}
+
+TEST(LightStore, StandsForPlacesOfShortSubpathsAlone) {
+  const Room room;
+  const LightStore store = room.store(64);
+  EXPECT_GT(expect_unbiased(store, room.cameras(6), 2), 3);
+  Sampler sampler = draws(0);
+  StoreChoice choice;
+  for (const Subpath& camera : room.cameras(12))
+    for (int i = 0; i < 200; ++i)
+      if (choose(store, end_of(camera), 1, 2, sampler, choice)) {
+        ASSERT_EQ(choice.place->s, 2);
+      }
+}
+
+TEST(LightStore, StandsForAllPlacesAtAnySize) {
+  for (const float scale : {1e-6f, 1e6f}) {
+    const Room room(scale);
+    const LightStore store = room.store(64);
+    ASSERT_GT(store.places.size(), 64u) << scale;
+    EXPECT_GT(expect_unbiased(store, room.cameras(6), most_edges, 20'000), 3) << scale;
+  }
+}
+
+// The probabilities that places ought to have, from the vertices themselves. (J1)
+std::vector<double> probabilities(const LightStore& store, const Room& room, const Vertex& c) {
+  const size_t n = store.blocks.size();
+  std::vector<double> p, sums(n);
+  for (size_t i = 0; i < store.places.size(); ++i) {
+    const Vertex& a = store.subpath(store.places[i]).back();
+    const glm::dvec3 w = glm::dvec3(c.p) - glm::dvec3(a.p);
+    const double d2 = glm::dot(w, w), cosines = std::max(glm::dot(glm::dvec3(a.guide.frame.n), w), 0.0) *
+                                                std::max(-glm::dot(glm::dvec3(c.guide.frame.n), w), 0.0) / d2;
+    const double g = cosines / d2, found = g / pi * (1 / a.own + 1 / c.own);
+    const double flux = luminance(a.beta) * std::max(luminance(albedo(a.guide.bsdf, a.guide.wo_local)), 0.02f);
+    double sees = 1;
+    if (a.guide.cell != none && c.guide.cell != none)
+      sees = chance(room.fields.views, room.fields.cells[a.guide.cell].region, room.fields.cells[c.guide.cell].region);
+    p.push_back(flux * g / (1 + found) * sees);
+    sums[i % n] += p.back();
+  }
+  for (size_t i = 0; i < p.size(); ++i) p[i] /= sums[i % n] > 0 ? sums[i % n] * double(n) : 1;
+  return p;
+}
+
+TEST(LightStore, ChoosesByWhatPlacesWouldBring) {
+  const Room room(1, true);
+  const LightStore store = room.store(40);
+  ASSERT_GT(store.blocks.size(), 2u);
+  constexpr int n = 100'000;
+  const std::vector<Subpath> cameras = room.cameras(5);
+  for (size_t k = 0; k < cameras.size(); ++k) {
+    const std::vector<double> p = probabilities(store, room, end_of(cameras[k]));
+    std::vector<double> drawn(p.size());
+    Sampler sampler = draws(100 + k);
+    for (int i = 0; i < n; ++i)
+      if (StoreChoice choice; choose(store, end_of(cameras[k]), 1, most_edges, sampler, choice))
+        drawn[index_of(store, choice)] += 1;
+    double statistic = 0, rare = 0, rare_drawn = 0;
+    int dof = 0;
+    const auto test = [&](double seen, double expected) {
+      if (expected > 0) statistic += (seen - expected) * (seen - expected) / expected, ++dof;
+    };
+    for (size_t i = 0; i < p.size(); ++i) {
+      if (p[i] * n < 10)
+        rare += p[i] * n, rare_drawn += drawn[i];
+      else
+        test(drawn[i], p[i] * n);
+      if (p[i] == 0) {
+        EXPECT_EQ(drawn[i], 0) << i;
+      }
+    }
+    test(rare_drawn, rare);
+    ASSERT_GT(dof, 20);
+    EXPECT_LT((statistic - dof) / std::sqrt(2.0 * dof), 5) << "camera vertex " << k << ", " << dof << " degrees";
+  }
+}
+
+TEST(LightStore, NothingIsChosenFromNothing) {
+  const Room room;
+  const LightStore empty = room.store(0), full = room.store(64);
+  LightStore black;  // subpaths that ended at once
+  add(black, {}, 1);
+  finish(black, 1);
+  EXPECT_EQ(black.paths, 1u);
+  StoreChoice choice;
+  for (const Subpath& camera : room.cameras(20)) {
+    Sampler sampler = draws(1);
+    EXPECT_FALSE(choose(empty, end_of(camera), 1, most_edges, sampler, choice));
+    EXPECT_FALSE(choose(black, end_of(camera), 1, most_edges, sampler, choice));
+    EXPECT_FALSE(choose(full, end_of(camera), 1, 1, sampler, choice)) << "no subpath is so short";
+    EXPECT_EQ(sampler.pair, 3u) << "each took one pair of numbers all the same";
+  }
+}
+
+// Opaque surfaces receive and scatter on one side.
+TEST(LightStore, NothingBehindIsChosen) {
+  const Room room;
+  const LightStore store = room.store(64);
+  int chosen = 0, behind = 0;
+  for (const Subpath& camera : room.cameras(20)) {
+    const Vertex& c = end_of(camera);
+    for (const LightStore::Place& at : store.places) behind += !may_scatter(c.guide, store.subpath(at).back().p - c.p);
+    Sampler sampler = draws(2);
+    for (int i = 0; i < 1000; ++i) {
+      StoreChoice choice;
+      if (!choose(store, c, 1, most_edges, sampler, choice)) continue;
+      const Vertex& a = store.subpath(*choice.place).back();
+      ASSERT_TRUE(may_scatter(c.guide, a.p - c.p));
+      ASSERT_TRUE(may_scatter(a.guide, c.p - a.p));
+      ++chosen;
+    }
+  }
+  EXPECT_GT(chosen, 10'000);
+  EXPECT_GT(behind, 100);
+}
+
+// What a store keeps of a subpath is what the join of that subpath itself reads.
+TEST(LightStore, JoinsAsTheSubpathItself) {
+  const Room room(1, true);
+  Subpath light;
+  Surface surface;
+  LightStore store;
+  int counts = 0;
+  const Subpath camera = room.cameras(1)[0];
+  for (uint32_t i = 0; i < 40; ++i) {
+    Sampler sampler = make_sampler(SamplerKind::independent, 5, Side::light, i, 0);
+    Walk walk;
+    light.n = 0;
+    ASSERT_TRUE(start_light(room.scene, room.options, sampler, light, walk));
+    while (light.n < most_edges && step(room.scene, room.accel, room.options, light, walk, surface) &&
+           scatter(room.options, sampler, light, walk)) {
+    }
+    const auto weigh = [&](std::span<const Vertex> subpath, double share) {
+      Candidate c;
+      return join_vertices(subpath, share, camera.first(camera.n), 64, c) ? weight(Heuristic::power, c) : -1;
+    };
+    const size_t before = store.places.size();
+    add(store, light, walk.first_share);
+    size_t place = before;
+    for (int s = 2; s <= light.n; ++s) {
+      if (!connectable(light[s - 1].guide) || !(luminance(light[s - 1].beta) > 0)) continue;
+      ASSERT_LT(place, store.places.size());
+      const LightStore::Place& at = store.places[place++];
+      EXPECT_EQ(at.s, s);
+      counts += std::abs(at.share - 1) > 0.1;
+      EXPECT_EQ(weigh(store.subpath(at), at.share), weigh(light.first(s), walk.first_share));
+    }
+    EXPECT_EQ(place, store.places.size());
+  }
+  EXPECT_GT(counts, 20) << "places whose share is not 1";
+}
+
+}  // namespace
+}  // namespace ajar
