@@ -74,7 +74,8 @@ TEST(Structures, LearnTheSame) {
                max = learned(scene, Structure::grid, Rule::max);
   for (const Side side : {Side::camera, Side::light}) {
     const double truth = mean_total(grid, side);
-    EXPECT_NEAR(mean_total(probes, side), truth, 0.1 * truth);
+    // Their cells end elsewhere, so that paths guided by them go to somewhat different places.
+    EXPECT_NEAR(mean_total(probes, side), truth, 0.2 * truth);
     // A light path's return sees the lens from its own vertices alone, the other rules from camera vertices too.
     EXPECT_NEAR(mean_total(returned, side), truth, 0.2 * truth);
     EXPECT_GT(mean_total(max, side), 1.5 * truth) << "max exaggerates";
