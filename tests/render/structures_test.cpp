@@ -60,6 +60,14 @@ double mean_total(const Fields& fields, Side side) {
   return sum / weights;
 }
 
+// The same of what their strata hold alone, without what next-event estimation (the lens) brings the cells themselves.
+double mean_of_strata(const Fields& fields, Side side) {
+  double sum = 0, weights = 0;
+  for (const FieldCell& cell : fields.of(side).cells)
+    sum += double(cell.visits * (cell.total - cell.direct)), weights += cell.visits;
+  return sum / weights;
+}
+
 Fields learned(const Scene& scene, Structure structure, Rule rule) {
   RenderOptions o = statistical("guided-bdpt");
   o.spp = 32, o.learn.structure = structure, o.learn.rule = rule;
@@ -78,6 +86,7 @@ TEST(Structures, LearnTheSame) {
     EXPECT_NEAR(mean_total(probes, side), truth, 0.2 * truth);
     // A light path's return sees the lens from its own vertices alone, the other rules from camera vertices too.
     EXPECT_NEAR(mean_total(returned, side), truth, 0.2 * truth);
+    EXPECT_GT(mean_of_strata(returned, side), 0.3 * mean_of_strata(grid, side));
     EXPECT_GT(mean_total(max, side), 1.5 * truth) << "max exaggerates";
   }
 }
