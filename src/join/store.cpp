@@ -5,10 +5,6 @@
 namespace ajar {
 namespace {
 
-uint32_t region_of(const Guide& guide) {
-  return guide.cell == none ? no_region : guide.fields->cells[guide.cell].region;
-}
-
 // 1 / own density, in units of the density with which a cosine lobe at the other end would find the vertex.
 float near_of(const Vertex& v, double inner) { return float(inv_pi / std::max(inner * v.own, 1e-30)); }
 

@@ -132,9 +132,8 @@ void join_stored(Work& work) {
   if (join_vertices(store.subpath(at), at.share, camera.first(camera.n), job.walk.light_paths, c)) {
     c.value *= choice.weight;
     const bool seen = add_if_visible(work, c, at.s, camera.n);
-    if (work.sample.teaches && v.guide.cell != none)
-      record_join(job.walk.fields->views, job.training->views, v.guide.fields->cells[v.guide.cell].region, at.region,
-                  seen);
+    if (work.sample.teaches)
+      record_join(job.walk.fields->views, job.training->views, region_of(v.guide), at.region, seen);
   }
   charge_join(work.scratch, at.s, camera.n);
 }

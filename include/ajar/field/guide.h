@@ -55,6 +55,10 @@ inline bool connectable(const Guide& guide) { return guide.bsdf.has_smooth && !g
 inline bool may_scatter(const Guide& guide, const Vec3& w) {
   return !guide.bsdf.opaque || glm::dot(guide.frame.n, w) > 0;
 }
+/// The region that the vertex is in (views.h), no_region if unknown.
+inline uint32_t region_of(const Guide& guide) {
+  return guide.cell == none ? no_region : guide.fields->cells[guide.cell].region;
+}
 /// Radiance that a vertex scatters to any one direction per irradiance, taken as diffuse [1/sr]; luminance.
 inline float scatters(const Guide& guide) { return luminance(albedo(guide.bsdf, guide.wo_local)) * inv_pi; }
 /// What a subpath of throughput beta that arrives at a vertex is expected to bring, by the field of its side: beta
