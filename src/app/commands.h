@@ -12,6 +12,7 @@ void add_render(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_fields(CLI::App& app);
+void add_plan(CLI::App& app);
 void add_report(CLI::App& app);
 
 }  // namespace ajar

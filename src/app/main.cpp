@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
   ajar::add_compare(app);
   ajar::add_bench(app);
   ajar::add_fields(app);
+  ajar::add_plan(app);
   ajar::add_report(app);
   try {
     app.parse(argc, argv);

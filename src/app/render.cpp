@@ -26,7 +26,7 @@ namespace {
 struct Arguments {
   std::string scene, out, size, time, cpu_time,
       heuristic = "power", sampler = "sobol", log, reference, checkpoint, resume, techniques, integrator, save_fields,
-      load_fields, guide = "both", field_memory, field_structure, field_rule, field_rate, versus;
+      load_fields, guide = "both", field_memory, field_structure, field_rule, field_rate, versus, plan;
   std::optional<std::string> noise;
   std::vector<std::string> defines, features;
   int spp = 0, max_depth = std::numeric_limits<int>::min(), threads = 0, roulette_depth = 5;
@@ -34,20 +34,6 @@ struct Arguments {
   int train = 0;
   bool no_next_event = false, png = false, half = false, quiet = false, lenient = false;
 };
-
-double parse_duration(const std::string& option, const std::string& text) {
-  size_t used = 0;
-  double value = -1;
-  try {
-    value = std::stod(text, &used);
-  } catch (const std::exception&) {
-  }
-  const std::string unit = value >= 0 ? text.substr(used) : "";
-  const double factor = unit.empty() || unit == "s" ? 1 : unit == "m" || unit == "min" ? 60 : unit == "h" ? 3600 : 0;
-  if (!(value > 0) || factor == 0 || !std::isfinite(value))
-    throw Error(fmt::format("{} {}: not a time; write 90s, 5m or 1h", option, text));
-  return value * factor;
-}
 
 double parse_noise(const std::string& text) {
   size_t used = 0;
@@ -68,7 +54,7 @@ size_t index_of(const Names& names, const std::string& name) {
 }
 std::vector<std::string> listed(std::span<const char* const> names) { return {names.begin(), names.end()}; }
 
-LearnOptions learn_options(const Arguments& a, const std::string& integrator) {
+LearnOptions learn_options(const Arguments& a, const std::string& integrator, bool may_learn) {
   const std::pair<const char*, bool> asked[] = {{"--save-fields", !a.save_fields.empty()},
                                                 {"--load-fields", !a.load_fields.empty()},
                                                 {"--guide", a.guide != "both"},
@@ -77,7 +63,7 @@ LearnOptions learn_options(const Arguments& a, const std::string& integrator) {
                                                 {"--field-rule", !a.field_rule.empty()},
                                                 {"--field-rate", !a.field_rate.empty()},
                                                 {"--train", a.train > 0}};
-  if (!is_guided(integrator))
+  if (!may_learn)
     for (const auto& [option, given] : asked)
       if (given)
         throw Error(fmt::format("{}: the integrator {} learns no fields; add --integrator guided-bdpt or guided-path",
@@ -109,7 +95,27 @@ void check_next_event(const RenderOptions& o, const Scene& scene) {
       throw Error("--no-next-event: the scene has lights without extent, which no ray can hit; leave it out");
 }
 
-RenderOptions render_options(const Arguments& a, Scene& scene) {
+// Whether a pilot decides: where the user asks for it, or where neither he nor the scene names an integrator.
+bool plans(const Arguments& a, const Scene& scene) {
+  if (a.plan.empty()) return a.integrator.empty() && scene.hints.integrator.empty() && a.resume.empty();
+  if (!a.integrator.empty()) throw Error("--plan: chooses the integrator; leave out either this or --integrator");
+  if (a.plan != "auto") return false;
+  if (!a.resume.empty())
+    throw Error("--plan auto: a checkpoint goes on as it began; name its integrator, which its record has");
+  return true;
+}
+
+std::vector<std::string> split(const std::string& list) {
+  std::vector<std::string> out(1);
+  for (const char c : list)
+    if (c == ',')
+      out.emplace_back();
+    else
+      out.back() += c;
+  return out;
+}
+
+RenderOptions render_options(const Arguments& a, Scene& scene, bool planned) {
   RenderOptions o;
   const auto known = integrator_names();
   const auto is_known = [&](const std::string& name) {
@@ -142,8 +148,10 @@ RenderOptions render_options(const Arguments& a, Scene& scene) {
   o.techniques = !a.techniques.empty();
   o.next_event = !a.no_next_event;
   check_next_event(o, scene);
-  o.learn = learn_options(a, o.integrator);
-  if (!a.versus.empty()) check_versus(a.versus, o.integrator);
+  if (a.plan == "all") o.integrator = "guided-bdpt";
+  o.learn = learn_options(a, o.integrator, planned || is_guided(o.integrator));
+  if (!a.plan.empty() && a.plan != "all" && a.plan != "auto") apply_parts(split(a.plan), o);
+  if (!a.versus.empty() && !planned) check_versus(a.versus, o.integrator);
   return o;
 }
 
@@ -231,9 +239,21 @@ void write_outputs(const Arguments& a, const Scene& scene, const Accel& accel, R
 
 // The image is safe by now; the record is written again.
 void hold_against(const Arguments& a, const Scene& scene, const Accel& accel, Run& run, const RenderState& state) {
+  if (a.versus == run.options.integrator) {
+    fmt::print(stderr, "ajar: note: {} was planned; there is nothing to hold it against\n", a.versus);
+    return;
+  }
   run.versus = run_versus(scene, accel, run.options, a.versus, state, [](const RenderState&) { return !stop_asked(); });
   write_record(a, run, state);
   if (!a.quiet) fmt::print("{}\n", describe(run.versus, state));
+}
+
+void plan_run(const Arguments& a, Scene& scene, const Accel& accel, Run& run) {
+  run.plan = make_plan(scene, accel, run.options, [](const RenderState&) { return !stop_asked(); });
+  run.options.integrator = run.plan.integrator;
+  if (!a.quiet) fmt::print(stderr, "ajar: note: {} is used; ajar plan says why\n", run.plan.integrator);
+  if (!is_guided(run.plan.integrator) && !a.save_fields.empty())
+    fmt::print(stderr, "ajar: note: nothing is learned, {} is not written\n", a.save_fields);
 }
 
 void warn(const RenderState& state) {
@@ -252,7 +272,8 @@ void run_render(Arguments a) {
   Run run;
   run.scene_path = a.scene, run.out_path = a.out, run.defines = a.defines;
   run.load_fields = a.load_fields, run.save_fields = a.save_fields;
-  run.options = render_options(a, scene);
+  run.planned = plans(a, scene);
+  run.options = render_options(a, scene, run.planned);
   for (const std::string& n : scene.notes)
     if (!a.quiet) fmt::print(stderr, "ajar: note: {}\n", n);
   run.threads = a.threads > 0 ? a.threads : int(std::thread::hardware_concurrency());
@@ -262,21 +283,23 @@ void run_render(Arguments a) {
   const Accel accel(scene);
   run.build_seconds = wall_seconds() - wall1, run.build_cpu = process_cpu_seconds() - cpu1;
   run.accel_bytes = accel.bytes();
+  catch_stop();
+  if (run.planned) plan_run(a, scene, accel, run);
 
   RenderState state = start_render(scene, run.options);
   const std::string key = checkpoint_key(run, state.film);
   if (!a.resume.empty()) load_checkpoint(a.resume, key, state);
-  if (!a.load_fields.empty())
+  if (!a.load_fields.empty() && is_guided(run.options.integrator))
     go_on_from(load_fields(a.load_fields, scene_key(scene)), learn_options(run.options), state.learning, state.film);
   Log log = open_log(a, state.film);
   Progress progress = make_progress(a.quiet);
   double saved = state.stats.seconds;
-  catch_stop();
   RenderOptions budget = run.options;
   if (!a.versus.empty()) budget.seconds *= 1 - versus_share, budget.cpu_seconds *= 1 - versus_share;
-  RenderOptions options = budget;  // the user's time begins after loading: building counts
-  if (options.seconds > 0) options.seconds = std::max(options.seconds - run.build_seconds, 1e-3);
-  if (options.cpu_seconds > 0) options.cpu_seconds = std::max(options.cpu_seconds - run.build_cpu, 1e-3);
+  RenderOptions options = budget;  // the user's time begins after loading: building and the pilot count
+  if (options.seconds > 0) options.seconds = std::max(options.seconds - run.build_seconds - run.plan.seconds, 1e-3);
+  if (options.cpu_seconds > 0)
+    options.cpu_seconds = std::max(options.cpu_seconds - run.build_cpu - run.plan.cpu_seconds, 1e-3);
   render(scene, accel, options, state, [&](const RenderState& s) {
     show(progress, budget, s);
     log.write(s, false);
@@ -291,7 +314,8 @@ void run_render(Arguments a) {
   log.write(state, true);
   if (run.interrupted && !a.quiet) fmt::print(stderr, "ajar: interrupted; writing what is there\n");
   if (!a.checkpoint.empty()) save_checkpoint(a.checkpoint, key, state);
-  if (!a.save_fields.empty()) save_fields(a.save_fields, stored_fields(scene, state.learning, state.film));
+  if (!a.save_fields.empty() && is_guided(run.options.integrator))
+    save_fields(a.save_fields, stored_fields(scene, state.learning, state.film));
   write_outputs(a, scene, accel, run, state);
   if (!a.versus.empty() && !run.interrupted) hold_against(a, scene, accel, run, state);
   warn(state);
@@ -307,7 +331,10 @@ void add_render(CLI::App& app) {
                 "image to write: .exr, or .png for a tonemapped one (default: the scene's name, here)");
   c->add_flag("--png", a->png, "write a tonemapped PNG beside the EXR");
   c->add_option("--integrator", a->integrator,
-                "path, bdpt, light, guided-path or guided-bdpt (default: the scene's, else bdpt)");
+                "path, bdpt, light, guided-path or guided-bdpt (default: the scene's, else what the plan says)");
+  c->add_option("--plan", a->plan,
+                "what to use: auto (a short pilot decides), all, none, or a list of light-subpaths, camera-guiding, "
+                "light-guiding (default: auto where no integrator is named)");
   c->add_option("--spp", a->spp, "samples per pixel")->check(CLI::Range(1, 1 << 30));
   c->add_option("--time", a->time, "wall time to render: 90s, 5m, 1h");
   c->add_option("--cpu-time", a->cpu_time, "CPU time of all threads to render");

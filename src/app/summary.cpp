@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ajar/report/account.h"
+#include "planning.h"
 #include "version.h"
 
 namespace ajar {
@@ -95,6 +96,7 @@ nlohmann::ordered_json summary(const Run& run, const RenderState& state) {
   }
   if (run.options.noise > 0)
     j["noise"] = {{"target", run.options.noise}, {"reached", error.relmse <= run.options.noise}};
+  if (run.planned) j["plan"] = to_json(run.plan);
   if (!run.versus.integrator.empty()) j["versus"] = to_json(run.versus, state);
   add_account(j, state);
   return j;

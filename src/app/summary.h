@@ -6,7 +6,7 @@
 #include <string>
 
 #include "ajar/film/picture.h"
-#include "ajar/render/render.h"
+#include "ajar/render/plan.h"
 #include "versus.h"
 
 namespace ajar {
@@ -23,6 +23,8 @@ struct Run {
   int threads = 1;
   bool interrupted = false;
   Versus versus;
+  Plan plan;  ///< where one was made
+  bool planned = false;
 };
 
 nlohmann::ordered_json summary(const Run& run, const RenderState& state);

@@ -168,16 +168,28 @@ ErrorEstimate estimate_error(const Film& film) {
   if (film.passes < 2) return {};
   const std::vector<glm::dvec3> mean = means(film);
   if (std::all_of(mean.begin(), mean.end(), [](const glm::dvec3& m) { return m == glm::dvec3(0); })) return {};
-  std::vector<double> error(film.pixels());
+  struct Pixel {
+    double error, light;
+  };
+  std::vector<Pixel> pixels(film.pixels());
   parallel_for(film.height, [&](int y) {
-    for (int x = 0; x < film.width; ++x) error[size_t(y) * film.width + x] = pixel_error(film, mean, x, y);
+    for (int x = 0; x < film.width; ++x) {
+      const size_t i = size_t(y) * film.width + x;
+      pixels[i] = {pixel_error(film, mean, x, y), luminance(Rgb(mean[i]))};
+    }
   });
+  const auto add = [](const Pixel& a, const Pixel& b) { return Pixel{a.error + b.error, a.light + b.light}; };
+  const auto kept = pixels.end() - std::ptrdiff_t(pixels.size() / 1000);
+  const Pixel all = std::accumulate(pixels.begin(), pixels.end(), Pixel{}, add);
+  if (kept != pixels.end())
+    std::nth_element(pixels.begin(), kept, pixels.end(),
+                     [](const Pixel& a, const Pixel& b) { return a.error < b.error; });
+  const Pixel most = std::accumulate(pixels.begin(), kept, Pixel{}, add);
   const double more = film.passes / (film.passes + share_done(film));
   ErrorEstimate out;
-  out.relmse = more * std::accumulate(error.begin(), error.end(), 0.0) / double(error.size());
-  const auto kept = error.end() - std::ptrdiff_t(error.size() / 1000);
-  if (kept != error.end()) std::nth_element(error.begin(), kept, error.end());
-  out.relmse_trimmed = more * std::accumulate(error.begin(), kept, 0.0) / double(kept - error.begin());
+  out.relmse = more * all.error / double(pixels.size());
+  out.relmse_trimmed = more * most.error / double(kept - pixels.begin());
+  out.trimmed_light = all.light > 0 ? std::clamp(1 - most.light / all.light, 0.0, 1.0) : 1;
   return out;
 }
 

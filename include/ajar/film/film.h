@@ -62,7 +62,8 @@ Picture variance(const Film& film);
 /// What is expected of `ajar compare` against the true image; infinite before the second pass, and as long as nothing
 /// but black was seen.
 struct ErrorEstimate {
-  double relmse = infinity, relmse_trimmed = infinity;
+  double relmse = infinity, relmse_trimmed = infinity;  ///< of all pixels; without the worst 0.1 % of them
+  double trimmed_light = 1;                             ///< share of the image's luminance that those worst ones hold
 };
 /// From the difference of the two halves, which are independent whatever the sampler; docs/notation.md, E1 to E3. A
 /// pass at work counts by the share of it that is done.

@@ -1,0 +1,57 @@
+// ajar plan: what a scene needs, as a short pilot sees it.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "ajar/scene/load.h"
+#include "arguments.h"
+#include "commands.h"
+#include "planning.h"
+#include "stop.h"
+
+namespace ajar {
+namespace {
+
+struct Arguments {
+  std::string scene, size, cpu_time = "60s";
+  std::vector<std::string> defines;
+  uint64_t seed = 0;
+  int threads = 0, max_depth = 0;
+  bool json = false, lenient = false;
+};
+
+void run_plan(const Arguments& a) {
+  Scene scene = load_scene(a.scene, load_options(a.defines, a.lenient));
+  if (!a.size.empty()) set_size(scene.camera, a.size);
+  const Accel accel(scene);
+  RenderOptions options;
+  options.cpu_seconds = parse_duration("--cpu-time", a.cpu_time);
+  options.seed = a.seed, options.threads = a.threads;
+  options.max_depth = a.max_depth != 0 ? a.max_depth : scene.hints.max_depth;
+  catch_stop();
+  const Plan plan = make_plan(scene, accel, options, [](const RenderState&) { return !stop_asked(); });
+  fmt::print("{}", a.json ? to_json(plan).dump(2) + "\n" : describe(plan));
+}
+
+}  // namespace
+
+void add_plan(CLI::App& app) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* c = app.add_subcommand("plan", "Tell which parts of the method a scene needs");
+  c->add_option("scene", a->scene, "Mitsuba XML scene")->required();
+  c->add_option("--cpu-time", a->cpu_time,
+                "budget of the render that is planned; the pilot takes about 5 % of it (60s)");
+  c->add_option("--size", a->size, "WIDTHxHEIGHT instead of the scene's");
+  c->add_option("--max-depth", a->max_depth, "edges of the longest path; -1 is unlimited");
+  c->add_option("--seed", a->seed, "another seed");
+  c->add_option("--threads", a->threads, "threads (default: all)")->check(CLI::Range(1, 4096));
+  c->add_option("-D", a->defines, "name=value: a parameter of the scene")->allow_extra_args(false);
+  c->add_flag("--json", a->json, "for machines");
+  c->add_flag("--lenient", a->lenient, "leave out what the loader does not know, with a note");
+  c->callback([a] { run_plan(*a); });
+}
+
+}  // namespace ajar

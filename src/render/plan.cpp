@@ -1,0 +1,253 @@
+// Leave out what a scene does not need: a pilot tells which integrator comes to a given error first.
+
+#include "ajar/render/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "ajar/core/error.h"
+
+namespace ajar {
+namespace {
+
+// From the simplest to the fullest. What a ray costs with all that hangs on it, measured on three scenes (results.md).
+struct Candidate {
+  const char* name;
+  uint32_t passes;  // of the pilot
+  double ray;       // [us]
+  double sample;    // [us] about, before it is measured: for the pilot's size
+  bool light_subpaths, guided;
+};
+constexpr Candidate candidates[] = {{"path", 8, 0.23, 2, false, false},
+                                    {"guided-path", 16, 0.38, 5, false, true},
+                                    {"bdpt", 8, 0.225, 6.5, true, false},
+                                    {"guided-bdpt", 16, 0.46, 10, true, true}};
+constexpr double least_pixels = 900;  // below, a pilot says little
+constexpr double hysteresis = 0.9;
+constexpr double still_to_learn = 0.75;  // of a guided integrator's time: the render learns on where the pilot ends
+constexpr int block = 8;                 // pixels
+
+// CPU seconds.
+double budget_of(const RenderOptions& o, double pixels) {
+  const double threads = o.threads > 0 ? o.threads : std::max(1u, std::thread::hardware_concurrency());
+  double most = infinity;
+  if (o.cpu_seconds > 0) most = std::min(most, o.cpu_seconds);
+  if (o.seconds > 0) most = std::min(most, o.seconds * threads);
+  const double typical = candidates[2].sample * 1e-6;
+  if (o.spp > 0 && (most == infinity || o.noise > 0)) most = std::min(most, o.spp * pixels * typical);
+  return most;
+}
+
+// Scales the camera to so many pixels as the pilot can afford; false where that is too few.
+bool set_pilot_size(Camera& camera, const RenderOptions& options) {
+  double per_pixel = 0;
+  for (const Candidate& c : candidates) per_pixel += c.passes * c.sample * 1e-6;
+  const double full = double(camera.width) * camera.height;
+  const double wanted = std::min(pilot_share * budget_of(options, full) / per_pixel, full);
+  if (wanted < std::min(least_pixels, full)) return false;
+  const double scale = std::sqrt(wanted / full);
+  set_size(camera, std::max(1, int(camera.width * scale)), std::max(1, int(camera.height * scale)));
+  return true;
+}
+
+// A finished trial with what it saw.
+struct Seen {
+  Trial trial;
+  Film film;
+};
+
+Seen run_trial(const Scene& scene, const Accel& accel, RenderOptions options, const Candidate& c,
+               const Monitor& monitor) {
+  options.integrator = c.name;
+  options.spp = c.passes;
+  options.seconds = options.cpu_seconds = options.noise = 0;
+  options.techniques = false;
+  options.learn.train = 0;
+  RenderState state = start_render(scene, options);
+  render(scene, accel, options, state, monitor);
+  const Counters& n = state.stats.counters;
+  const double rays = double(n.camera_rays + n.light_rays + n.shadow_rays);
+  const double samples = std::max(double(n.camera_paths), 1.0);
+  return {{c.name, state.film.passes, 0, 0, rays / samples * c.ray}, std::move(state.film)};
+}
+
+double mean_of(const Film& film) {
+  double sum = 0;
+  for (size_t i = 0; i < film.pixels(); ++i)
+    sum += luminance(Rgb(film.camera_sum[i] + (film.splats ? film.splat_sum[i] : glm::dvec3(0))));
+  return sum / double(film.pixels()) / std::max(film.passes, 1u);
+}
+
+// Without the worst pixels, so that a firefly more or less does not decide; but as far as these hold most of the light
+// that was seen at all, they are what the error is about.
+double error_of_pass(const Film& film) {
+  const ErrorEstimate e = estimate_error(film);
+  if (!(e.relmse < infinity)) return infinity;
+  return std::lerp(e.relmse_trimmed, e.relmse, std::max(2 * e.trimmed_light - 1, 0.0)) * film.passes;
+}
+
+// Errors are relative to the image as it would be looked at: exposed to a mean of a fifth, by whoever saw most.
+void expose(std::vector<Seen>& seen) {
+  double mean = 0;
+  for (const Seen& s : seen) mean = std::max(mean, mean_of(s.film));
+  if (!(mean > 0)) return;
+  const double scale = 0.2 / mean;
+  for (Seen& s : seen) {
+    for (auto* sums : {&s.film.camera_sum, &s.film.splat_sum, &s.film.half_sum})
+      for (glm::dvec3& x : *sums) x *= scale;
+    for (glm::dvec3& x : s.film.square_sum) x *= scale * scale;
+    s.trial.error = error_of_pass(s.film);
+  }
+}
+
+struct Block {
+  double mean = 0, variance = 0;  // of the mean, by the film's halves
+};
+
+std::vector<Block> blocks_of(const Film& film) {
+  const double n = film.passes, a = (film.passes + 1) / 2, b = film.passes / 2;
+  std::vector<Block> out;
+  for (int y0 = 0; y0 < film.height; y0 += block)
+    for (int x0 = 0; x0 < film.width; x0 += block) {
+      double half = 0, all = 0, count = 0;
+      for (int y = y0; y < std::min(y0 + block, film.height); ++y)
+        for (int x = x0; x < std::min(x0 + block, film.width); ++x, ++count) {
+          const size_t i = size_t(y) * size_t(film.width) + size_t(x);
+          const glm::dvec3 sum = film.camera_sum[i] + (film.splats ? film.splat_sum[i] : glm::dvec3(0));
+          all += luminance(Rgb(sum)), half += luminance(Rgb(film.half_sum[i]));
+        }
+      const double difference = (half / a - (all - half) / b) / count;
+      out.push_back({all / n / count, difference * difference * a * b / (n * n)});
+    }
+  return out;
+}
+
+// What no pass of a trial saw cannot be told from its own spread: it is held against what the others saw. Values are
+// not negative and their distributions have long tails, so that who sees more is more likely right.
+void find_unseen(std::vector<Seen>& seen) {
+  std::vector<std::vector<Block>> blocks;
+  for (const Seen& s : seen) blocks.push_back(blocks_of(s.film));
+  for (size_t k = 0; k < seen.size(); ++k) {
+    double most = 0;
+    for (size_t j = 0; j < seen.size(); ++j) {
+      double sum = 0;
+      for (size_t i = 0; j != k && i < blocks[k].size(); ++i) {
+        const Block &mine = blocks[k][i], &other = blocks[j][i];
+        const double missed = std::max(other.mean - mine.mean, 0.0);
+        sum += (missed * missed - mine.variance - other.variance) / (other.mean * other.mean + 0.01);
+      }
+      most = std::max(most, sum / double(std::max(blocks[k].size(), size_t(1))));
+    }
+    seen[k].trial.unseen = most;
+  }
+}
+
+const Trial* find(const Plan& plan, const std::string& name) {
+  for (const Trial& t : plan.trials)
+    if (t.integrator == name) return &t;
+  return nullptr;
+}
+
+const Candidate& candidate_of(const std::string& name) {
+  return *std::find_if(std::begin(candidates), std::end(candidates),
+                       [&](const Candidate& c) { return name == c.name; });
+}
+
+std::string times(const Plan& plan, const char* with, const char* without) {
+  const Trial *a = find(plan, with), *b = find(plan, without);
+  if (!a || !b || !(a->price() < infinity) || !(b->price() > 0)) return "not measured";
+  return fmt::format("{} takes {:.2g} times the time of {} to equal error", with, a->price() / b->price(), without);
+}
+
+void add_measured_parts(Plan& plan) {
+  const Candidate& chosen = candidate_of(plan.integrator);
+  plan.parts.push_back({"light-subpaths", chosen.light_subpaths,
+                        chosen.guided ? times(plan, "guided-bdpt", "guided-path") : times(plan, "bdpt", "path")});
+  const std::string guiding =
+      chosen.light_subpaths ? times(plan, "guided-bdpt", "bdpt") : times(plan, "guided-path", "path");
+  plan.parts.push_back({"camera-guiding", chosen.guided, guiding});
+  plan.parts.push_back({"light-guiding", chosen.guided && chosen.light_subpaths,
+                        chosen.light_subpaths ? guiding : "there are no light subpaths"});
+}
+
+// What the scene does not contain costs nothing: the tracer asks once per scene or material, not per path.
+void add_contained_parts(const Scene& scene, Plan& plan) {
+  const auto add = [&](const char* name, bool on, std::string with, std::string without) {
+    plan.parts.push_back({name, on, on ? std::move(with) : std::move(without)});
+  };
+  const size_t lights = scene.lights.size();
+  add("next-event", lights > 0, fmt::format("{} light{}", lights, lights == 1 ? "" : "s"), "the scene has no light");
+  add("light-choice", lights > 1, "more than one light", "there is nothing to choose");
+  add("environment", !scene.infinite_lights.empty(), "rays that escape find light", "rays that escape find nothing");
+  add("instances", !scene.instances.empty(), fmt::format("{}", scene.instances.size()), "none in the scene");
+  add("textures", !scene.textures.empty(), fmt::format("{}", scene.textures.size()), "none in the scene");
+}
+
+void choose(Plan& plan) {
+  const Trial* best = nullptr;
+  const auto price = [](const Trial& t) { return t.price() * (is_guided(t.integrator) ? still_to_learn : 1); };
+  for (const Trial& t : plan.trials)
+    if (t.price() < infinity && (!best || price(t) < hysteresis * price(*best))) best = &t;
+  if (best) plan.integrator = best->integrator;
+}
+
+}  // namespace
+
+Plan make_plan(Scene& scene, const Accel& accel, const RenderOptions& options, const Monitor& monitor) {
+  Plan plan;
+  plan.integrator = "guided-bdpt";
+  const double wall = wall_seconds(), cpu = process_cpu_seconds();
+  const Camera camera = scene.camera;
+  if (scene.lights.empty()) {
+    plan.integrator = "path";
+  } else if (set_pilot_size(scene.camera, options)) {
+    plan.width = scene.camera.width, plan.height = scene.camera.height;
+    std::vector<Seen> seen;
+    bool go_on = true;
+    const Monitor watch = [&](const RenderState& state) { return go_on = !monitor || monitor(state); };
+    for (const Candidate& c : candidates) {
+      Seen s = run_trial(scene, accel, options, c, watch);
+      if (!go_on) break;
+      seen.push_back(std::move(s));
+    }
+    expose(seen);
+    find_unseen(seen);
+    for (const Seen& s : seen) plan.trials.push_back(s.trial);
+    choose(plan);
+  } else {
+    plan.integrator = "bdpt";  // learning takes longer than there is
+  }
+  scene.camera = camera;
+  add_measured_parts(plan);
+  add_contained_parts(scene, plan);
+  plan.seconds = wall_seconds() - wall, plan.cpu_seconds = process_cpu_seconds() - cpu;
+  return plan;
+}
+
+void apply_parts(const std::vector<std::string>& parts, RenderOptions& options) {
+  bool light = false, camera_guided = false, light_guided = false;
+  for (const std::string& part : parts) {
+    if (part == "light-subpaths")
+      light = true;
+    else if (part == "camera-guiding")
+      camera_guided = true;
+    else if (part == "light-guiding")
+      light_guided = true;
+    else if (part != "none")
+      throw Error(
+          fmt::format("--plan {}: no such part; write auto, all, none, or a list of light-subpaths, "
+                      "camera-guiding, light-guiding",
+                      part));
+  }
+  if (light_guided && !light) throw Error("--plan light-guiding: guides light subpaths; add light-subpaths");
+  if (!camera_guided && !light_guided)
+    options.integrator = light ? "bdpt" : "path";
+  else
+    options.integrator = light ? "guided-bdpt" : "guided-path";
+  options.learn.guided = !light_guided ? Guided::camera : camera_guided ? Guided::both : Guided::light;
+}
+
+}  // namespace ajar
