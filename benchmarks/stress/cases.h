@@ -25,6 +25,7 @@ struct Case {
   std::string judge = "path";
   bool path = true;      ///< rays that run into lights, and next-event estimation, can find all its light
   bool light = true;     ///< paths from the lights, joined to the lens, can find all its light
+  bool limit = false;    ///< it may be wrong, and docs/limits.md says why
   bool refused = false;  ///< make is to throw an Error
   int max_depth = -1;
   uint32_t passes = 8;

@@ -119,6 +119,7 @@ double seconds_per_path(const Outcome& o) { return o.paths > 0 ? o.cpu_seconds /
 std::string cell(Table& table, const Case& c, const std::string& integrator, const Trial& t, const Verdict& v) {
   const Outcome& o = t.outcome;
   if (!t.death.empty()) return ++table.wrong, fmt::format("**{}**", t.death);
+  if (!v.ok && c.limit) return "limit";
   if (!v.ok) return ++table.wrong, fmt::format("**wrong** (p {:.0e})", v.p);
   if (c.refused) return "refused";
   std::string text = c.answer == 0 ? "black" : c.judge.empty() && c.answer < 0 ? "ends" : fmt::format("{:.2f}", v.p);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "ajar/scene/build.h"
 #include "lessons.h"
 #include "run.h"
 
@@ -27,7 +28,7 @@ std::vector<Case> quick() {
                                    "100 room widths",
                                    "10000 room widths",
                                    "a second floor 1e-06 below",
-                                   "box 1e-06 around the lamp",
+                                   "box 1e-05 around the lamp",
                                    "2000 slivers 1:1000",
                                    "x 1e-12",
                                    "x 1e+12",
@@ -50,7 +51,7 @@ std::vector<Case> quick() {
   std::vector<Case> chosen;
   for (Case& c : cases())
     if (c.refused || std::find(std::begin(names), std::end(names), c.name) != std::end(names)) {
-      c.passes = std::max(c.passes / 4, 1u);
+      c.passes = std::max(c.passes / 2, 1u);
       chosen.push_back(std::move(c));
     }
   return chosen;
@@ -64,7 +65,7 @@ TEST_P(Stress, IsBorne) {
   const Outcome right = reference(c, 16);
   for (const std::string& integrator : integrator_names()) {
     if (!can_find(c, integrator)) continue;
-    const Verdict v = judge(c, run(c, integrator, 8), right);
+    const Verdict v = judge(c, run(c, integrator, 16), right);
     EXPECT_TRUE(v.ok) << integrator << ": " << v.message;
   }
 }
@@ -91,6 +92,18 @@ TEST(Lessons, ApproachTheAnswerFromBelow) {
 // Where the answer is infinite, every lesson adds what one more bounce brings, and no more.
 TEST(Lessons, GrowByABounceWithoutLoss) {
   for (const Lesson& l : lessons(1, Rule::expected, 16)) EXPECT_LT(l.mean, 1.05 * l.number) << l.number;
+}
+
+// What 100 000 passes of one value sum up to: in single precision it would be off in the third digit.
+TEST(LongRender, SumsDoNotDrift) {
+  const Scene scene = inside_sphere(Rgb(0.1f), 2);
+  const Accel accel(scene);
+  RenderOptions o;
+  o.integrator = "path";
+  o.spp = 100000;
+  RenderState state = start_render(scene, o);
+  render(scene, accel, o, state, nullptr);
+  for (const float v : develop(state.film).pixels) EXPECT_NEAR(v, 0.1f, 1e-7f);
 }
 
 TEST(StressSuite, GroupsBeginWithTheirOrdinaryCase) {
