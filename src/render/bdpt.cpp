@@ -106,6 +106,14 @@ void join_surface(Work& work, const Surface& surface) {
   charge_join(work.scratch, 0, camera.n);
 }
 
+// Share of the light of a next-event estimation that hitting the lamp would not have brought better: the other share is
+// learned from rays that do hit it. Without it Q would hold large lamps twice, and, near them, the infinite variance of
+// points on a lamp.
+float share_of_next_event(const Work& work, const Candidate& c) {
+  if (c.light.sum_before == 0) return 1;  // cannot be hit
+  return float(1 / (1 + raise(work.job.walk.heuristic, ratio(c.light.other, c.light.own * c.shares.light_first))));
+}
+
 // s = 1: next-event estimation.
 void join_next_event(Work& work) {
   const Job& job = work.job;
@@ -116,7 +124,7 @@ void join_next_event(Work& work) {
   const bool lit = join_light(*job.scene, job.walk.fields, work.sample.sampler, camera, t, job.walk.light_paths, c) &&
                    add_if_visible(work, c, 1, t);
   charge_join(work.scratch, 1, t);
-  teach_direct(work, camera[t - 1], lit ? luminance(c.arrives) : 0);
+  teach_direct(work, camera[t - 1], lit ? luminance(c.arrives) * share_of_next_event(work, c) : 0);
 }
 
 // s >= 2: one of all light vertices of the chunk.

@@ -63,7 +63,7 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 bool same_field(const Field& a, const Field& b) {
-  return same_bytes(a.cells, b.cells) && same_bytes(a.nodes, b.nodes) && same_bytes(a.mean, b.mean) &&
+  return same_bytes(a.cells, b.cells) && a.nodes == b.nodes && same_bytes(a.mean, b.mean) &&
          same_bytes(a.weight, b.weight);
 }
 bool same_training(const Tallies& a, const Tallies& b) {

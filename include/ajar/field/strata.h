@@ -17,6 +17,7 @@ struct StrataNode {
   uint16_t divided = 0;      ///< bit i: stratum i has a node
   uint32_t children = 0;     ///< index of the first of these nodes; they follow each other
 
+  bool operator==(const StrataNode&) const = default;
   uint32_t child(int i) const { return children + uint32_t(std::popcount(unsigned(divided & ((1u << i) - 1)))); }
   bool is_divided(int i) const { return (divided >> i) & 1; }
   /// Share of stratum i, in steps of 2^-16.

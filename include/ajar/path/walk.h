@@ -65,6 +65,12 @@ inline bool choose_light_point(const Scene& scene, const Guide& guide, const Vec
   return sample_direct(scene, light, p, sampler.at(place), out);
 }
 
+/// The largest probability of going on that roulette knows. A constant c would give paths through surfaces of albedo
+/// above sqrt(c) weights of infinite variance, however many paths; this one lets a path of n vertices live with a
+/// chance of about 9 / n, so that its weight grows slower than any albedo takes away, and a path that loses nothing
+/// still ends soon.
+inline float surest(int vertices) { return std::max(0.95f, 1 - 1 / float(vertices)); }  // (R4)
+
 /// Probability that a subpath of so many vertices goes on. Where the field knows what is still to be expected of it,
 /// that decides, against what was expected at its start (promised: set here the first time that it is known); elsewhere
 /// its throughput.
@@ -73,10 +79,10 @@ inline float keep(const WalkOptions& options, const Guide& guide, int vertices, 
   if (options.fields) {
     const Promise p = promise(guide, beta);
     if (!(promised > 0)) promised = p.all;
-    const float most = vertices > options.sure_vertices ? 0.95f : 1;
+    const float most = vertices > options.sure_vertices ? surest(vertices) : 1;
     if (p.beyond > 0 && promised > 0) return std::clamp(options.window * p.beyond / promised, 0.05f, most);  // (G6)
   }
-  return vertices > options.roulette_from ? std::min(max_component(survival), 0.95f) : 1;
+  return vertices > options.roulette_from ? std::min(max_component(survival), surest(vertices)) : 1;
 }
 
 /// Samples the direction in which a path goes on, beta and survival times its weight; with roulette only some go on.

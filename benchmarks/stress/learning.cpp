@@ -1,0 +1,187 @@
+// Cases of learned fields that are odd, wrong or hostile: the image must be right all the same.
+#include <fmt/format.h>
+
+#include <unistd.h>
+#include <algorithm>
+#include <filesystem>
+#include <numeric>
+
+#include "ajar/core/sampler.h"
+#include "ajar/film/picture.h"
+#include "ajar/scene/build.h"
+#include "cases.h"
+
+namespace ajar::stress {
+namespace {
+
+constexpr int height = 14;
+
+Scene usual() { return two_rooms(40, height); }
+
+Scene with_radiance(const Rgb& radiance) {
+  Scene scene = usual();
+  scene.lights[0].radiance.value = radiance;
+  finish(scene);
+  return scene;
+}
+
+// What guided-bdpt learns of a scene.
+StoredFields learned(const Scene& scene, uint32_t passes) {
+  RenderOptions o;
+  o.integrator = "guided-bdpt";
+  o.sampler = SamplerKind::independent;
+  o.seed = 77;
+  o.spp = passes;
+  const Accel accel(scene);
+  RenderState state = start_render(scene, o);
+  render(scene, accel, o, state, nullptr);
+  return stored_fields(scene, state.learning, state.film);
+}
+
+// Gives what the strongest stratum of a node has to the weakest, and so on, and trusts that as far as anything is
+// trusted.
+StoredFields upside_down() {
+  StoredFields stored = learned(usual(), 32);
+  for (Field* field : {&stored.fields.q, &stored.fields.w}) {
+    for (StrataNode& node : field->nodes) {
+      std::array<int, 16> order;
+      std::array<uint32_t, 16> steps;
+      std::iota(order.begin(), order.end(), 0);
+      for (int i = 0; i < 16; ++i) steps[size_t(i)] = node.steps(i);
+      std::sort(order.begin(), order.end(), [&](int a, int b) { return steps[size_t(a)] < steps[size_t(b)]; });
+      std::array<uint32_t, 16> next{};
+      for (size_t i = 0; i < 16; ++i) next[size_t(order[i])] = steps[size_t(order[15 - i])];
+      uint32_t before = 0;
+      for (size_t i = 0; i < 16; ++i) node.before[i] = uint16_t(before), before += next[i];
+    }
+    for (FieldCell& cell : field->cells) cell.mix = 0.8f;
+  }
+  return stored;
+}
+
+// What roulette is told to expect is wrong by up to a million, another factor in every cell.
+StoredFields lying() {
+  StoredFields stored = learned(usual(), 32);
+  for (Field* field : {&stored.fields.q, &stored.fields.w})
+    for (size_t i = 0; i < field->cells.size(); ++i) {
+      const float lie = std::pow(10.0f, 12 * to_unit(uint32_t(hash(i, 5) >> 32)) - 6);
+      field->cells[i].direct *= lie, field->cells[i].total *= lie;
+    }
+  return stored;
+}
+
+void freeze(LearnOptions& o) { o.train = 2; }
+
+std::string scratch(const char* name) {
+  return (std::filesystem::temp_directory_path() / fmt::format("ajar-stress-{}-{}", getpid(), name)).string();
+}
+
+// A scene whose fields come from a file with a value in the wrong place.
+Scene poisoned(float value) {
+  const Scene scene = usual();
+  StoredFields stored = learned(scene, 8);
+  stored.fields.q.mean[stored.fields.q.mean.size() / 2] = value;
+  const std::string path = scratch("fields");
+  save_fields(path, stored);
+  try {
+    load_fields(path, scene_key(scene));
+  } catch (...) {
+    std::filesystem::remove(path);
+    throw;
+  }
+  return scene;
+}
+
+Scene with_foreign_fields() {
+  const std::string path = scratch("foreign");
+  save_fields(path, learned(cornell(8), 8));
+  Scene scene = usual();
+  try {
+    load_fields(path, scene_key(scene));
+  } catch (...) {
+    std::filesystem::remove(path);
+    throw;
+  }
+  return scene;
+}
+
+Scene with_texel(float value) {
+  const std::string path = scratch("texture.exr");
+  Picture picture{4, 4, {"R", "G", "B"}, std::vector<float>(48, 0.5f)};
+  picture.pixels[20] = value;
+  write_exr(path, picture, {}, false);
+  Scene scene = usual();
+  try {
+    scene.images.push_back(load_image(path, false, 0));
+  } catch (...) {
+    std::filesystem::remove(path);
+    throw;
+  }
+  return scene;
+}
+
+// Learning as such, in a scene that needs it a little.
+void add_rates(std::vector<Case>& all) {
+  const auto add = [&](std::string name, std::function<void(LearnOptions&)> tune) {
+    all.push_back({"learning", std::move(name), usual});
+    all.back().judge = "bdpt";
+    all.back().tune = std::move(tune);
+  };
+  add("as usual", nullptr);
+  add("no room for a cell", [](LearnOptions& o) { o.memory = 1; });
+  add("one cell", [](LearnOptions& o) { o.memory = bytes(start_fields(usual(), 1)); });
+  add("cells divided at once, 1 GB", [](LearnOptions& o) { o.divide_cell = 1, o.memory = size_t(1) << 30; });
+  add("a million cells", [](LearnOptions& o) { o.structure = Structure::grid, o.memory = size_t(16) << 30; });
+  all.back().make = [] { return two_rooms(40, 180); };
+  all.back().large = true;
+  add("strata divided at once", [](LearnOptions& o) { o.divide_stratum = 1e-6f; });
+  add("older evidence forgotten", [](LearnOptions& o) { o.forget = 0; });
+  add("older evidence kept", [](LearnOptions& o) { o.forget = 1; });
+  add("one record is trusted", [](LearnOptions& o) { o.trust = 1e-6f; });
+  add("nothing is trusted", [](LearnOptions& o) { o.trust = 1e30f; });
+  add("mix 0.9999", [](LearnOptions& o) { o.mix = 0.9999f, o.trust = 1e-6f; });
+  add("max rule", [](LearnOptions& o) { o.rule = Rule::max; });
+  add("returns", [](LearnOptions& o) { o.rule = Rule::returned; });
+}
+
+void add_wrong_fields(std::vector<Case>& all) {
+  const auto add = [&](std::string name, std::function<StoredFields()> fields) {
+    all.push_back({"wrong fields", std::move(name), usual});
+    all.back().judge = "bdpt";
+    all.back().fields = std::move(fields);
+    all.back().tune = freeze;
+  };
+  add("the scene's own", [] { return learned(usual(), 32); });
+  add("of a million paths in the dark", [] { return learned(with_radiance(Rgb(0)), 2900); });
+  all.back().tune = nullptr;
+  add("of a lamp a billion times as dim", [] { return learned(with_radiance(Rgb(1e-9f)), 32); });
+  add("of another scene", [] { return learned(cornell(24), 32); });
+  add("upside down", upside_down);
+  add("lying by 1e6", lying);
+}
+
+void add_refused(std::vector<Case>& all) {
+  const auto add = [&](std::string name, std::function<Scene()> make) {
+    all.push_back({"bad input", std::move(name), std::move(make)});
+    all.back().refused = true;
+  };
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  add("fields with NaN", [nan] { return poisoned(nan); });
+  add("fields with infinity", [] { return poisoned(infinity); });
+  add("fields below zero", [] { return poisoned(-1); });
+  add("fields of another scene", with_foreign_fields);
+  add("texture with NaN", [nan] { return with_texel(nan); });
+  add("texture with infinity", [] { return with_texel(infinity); });
+}
+
+}  // namespace
+
+std::vector<Case> learning_cases() {
+  std::vector<Case> all;
+  add_rates(all);
+  add_wrong_fields(all);
+  add_refused(all);
+  return all;
+}
+
+}  // namespace ajar::stress

@@ -1,0 +1,45 @@
+#include "lessons.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "ajar/render/render.h"
+#include "ajar/scene/build.h"
+
+namespace ajar::stress {
+namespace {
+
+Lesson look(const RenderState& state) {
+  Lesson out{state.learning.fields.generation, state.film.dropped + state.film.passes};
+  double visits = 0;
+  for (const FieldCell& c : state.learning.fields.q.cells) {
+    const double radiance = double(c.total) / std::numbers::pi;
+    out.mean += double(c.visits) * radiance, visits += double(c.visits);
+    out.most = std::max(out.most, radiance);
+  }
+  if (visits > 0) out.mean /= visits;
+  return out;
+}
+
+}  // namespace
+
+std::vector<Lesson> lessons(float albedo, Rule rule, uint32_t passes) {
+  Material wall;
+  wall.reflectance = Rgb(albedo);
+  const Scene scene = furnace(Oven::box, wall, Rgb(1), 16);
+  const Accel accel(scene);
+  RenderOptions o;
+  o.integrator = "guided-path";
+  o.sampler = SamplerKind::independent;
+  o.learn.rule = rule;
+  o.spp = passes;
+  RenderState state = start_render(scene, o);
+  std::vector<Lesson> out;
+  render(scene, accel, o, state, [&](const RenderState& now) {
+    if (now.learning.fields.generation != (out.empty() ? 0 : out.back().number)) out.push_back(look(now));
+    return true;
+  });
+  return out;
+}
+
+}  // namespace ajar::stress

@@ -1,0 +1,37 @@
+// Enters: a case of the stress suite and an integrator.
+// Leaves: what came of rendering it, and whether that is right.
+#pragma once
+
+#include "cases.h"
+#include "kit/ztest.h"
+
+namespace ajar::stress {
+
+/// Independent renders of a case.
+struct Outcome {
+  int width = 0, height = 0;
+  std::vector<std::vector<double>> runs;  ///< images, divided by the case's factor
+  std::string refusal;                    ///< why it was not rendered
+  uint64_t rejected = 0;
+  std::string replay;      ///< of the first rejected value
+  double paths = 0;        ///< camera samples in all images
+  double cpu_seconds = 0;  ///< of rendering them, learning included
+  double field_bytes = 0;  ///< of the last render
+  double noise = 0;        ///< root of the mean variance of one pass, over the mean brightness
+};
+
+/// batches: of renders with seeds of their own, each of so many times the case's passes.
+Outcome run(const Case& c, const std::string& integrator, int batches, double passes = 1);
+/// What the image ought to be; runs of the judge or twin if they must be made. Nothing where it is not known.
+Outcome reference(const Case& c, int batches);
+/// Whether the integrator can find all the light of the case.
+bool can_find(const Case& c, const std::string& integrator);
+
+struct Verdict {
+  bool ok = false;
+  double p = 1;         ///< that noise alone makes such a difference
+  std::string message;  ///< what is wrong
+};
+Verdict judge(const Case& c, const Outcome& outcome, const Outcome& reference);
+
+}  // namespace ajar::stress
