@@ -19,13 +19,17 @@ CellKey make_key(int level, uint32_t bin, const glm::uvec3& c) {
   return (uint64_t(level + 1) << 59) | (uint64_t(bin) << 54) | (uint64_t(c.z) << 36) | (uint64_t(c.y) << 18) | c.x;
 }
 
-const CellTable::Slot* find_slot(const CellTable& table, CellKey key) {
+// Where a key is among the slots, or the free slot where it would be.
+size_t slot_of(const CellTable& table, CellKey key) {
   const size_t mask = table.slots.size() - 1;
-  for (size_t i = mix64(key) & mask;; i = (i + 1) & mask) {
-    const CellTable::Slot& s = table.slots[i];
-    if (s.key == key) return &s;
-    if (s.key == 0) return nullptr;
-  }
+  size_t i = mix64(key) & mask;
+  while (table.slots[i].key != key && table.slots[i].key != 0) i = (i + 1) & mask;
+  return i;
+}
+
+const CellTable::Slot* find_slot(const CellTable& table, CellKey key) {
+  const CellTable::Slot& slot = table.slots[slot_of(table, key)];
+  return slot.key == key ? &slot : nullptr;
 }
 
 // Nearest probe to a point with a similar normal, or its opposite; none where there is none within reach.
@@ -80,12 +84,7 @@ void order(std::vector<Probe>& probes, size_t from, size_t to) {
   order(probes, middle + 1, to);
 }
 
-void place(CellTable& table, const CellTable::Slot& slot) {
-  const size_t mask = table.slots.size() - 1;
-  size_t i = mix64(slot.key) & mask;
-  while (table.slots[i].key != 0) i = (i + 1) & mask;
-  table.slots[i] = slot;
-}
+void place(CellTable& table, const CellTable::Slot& slot) { table.slots[slot_of(table, slot.key)] = slot; }
 
 }  // namespace
 
@@ -142,7 +141,7 @@ uint32_t cell_of(const CellTable& table, CellKey key) {
   return slot ? slot->cell : none;
 }
 
-void set_divided(CellTable& table, CellKey key) { const_cast<CellTable::Slot*>(find_slot(table, key))->divided = true; }
+void set_divided(CellTable& table, CellKey key) { table.slots[slot_of(table, key)].divided = true; }
 
 int level_of(CellKey key) { return int(key >> 59) - 1; }
 

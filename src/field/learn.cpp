@@ -107,9 +107,9 @@ float best(const std::vector<Node>& nodes) {
 // How many records a stratum of a level got, by their weights: those of narrow strata weigh little, since many
 // directions are drawn there.
 constexpr float least_records = 8;
-float records_in(float weight, float share, int level) {
+float records_in(float weight, float share, int level, float mix) {
   const float even = std::ldexp(1.0f, -4 * (level + 1));
-  return weight * (0.2f + 0.8f * share / even);
+  return weight * (1 - mix + mix * share / even);
 }
 
 // Divides heavy strata, joins light ones.
@@ -132,7 +132,7 @@ void reshape(Work& w, int32_t at, int level, float total) {
       Node& mine = w.nodes[size_t(at)];
       mine.child[i] = -1, mine.mean[i] = mean, mine.weight[i] = weight;
     } else if (share > w.options->divide_stratum && level + 1 < most_levels &&
-               records_in(w.nodes[size_t(at)].weight[i], share, level) >= least_records) {
+               records_in(w.nodes[size_t(at)].weight[i], share, level, w.options->mix) >= least_records) {
       const int32_t fresh = int32_t(w.nodes.size());
       w.nodes.emplace_back();
       Node& mine = w.nodes[size_t(at)];
