@@ -27,7 +27,7 @@ constexpr Candidate candidates[] = {{"path", 8, 0.23, 2, false, false},
                                     {"guided-bdpt", 16, 0.46, 10, true, true}};
 constexpr double least_pixels = 900;  // below, a pilot says little
 constexpr double hysteresis = 0.9;
-constexpr double still_to_learn = 0.75;  // of a guided integrator's time: the render learns on where the pilot ends
+constexpr double still_to_learn = 0.75;  // of a guided integrator's time, where a sample is mostly noise: see choose
 constexpr int block = 8;                 // pixels
 
 // CPU seconds.
@@ -186,11 +186,15 @@ void add_contained_parts(const Scene& scene, Plan& plan) {
   add("textures", !scene.textures.empty(), fmt::format("{}", scene.textures.size()), "none in the scene");
 }
 
+// Where light is hard to find, the render goes on learning after the pilot ends.
+double expected_price(const Trial& t) {
+  return t.price() * (is_guided(t.integrator) && t.error > 1 ? still_to_learn : 1);
+}
+
 void choose(Plan& plan) {
   const Trial* best = nullptr;
-  const auto price = [](const Trial& t) { return t.price() * (is_guided(t.integrator) ? still_to_learn : 1); };
   for (const Trial& t : plan.trials)
-    if (t.price() < infinity && (!best || price(t) < hysteresis * price(*best))) best = &t;
+    if (t.price() < infinity && (!best || expected_price(t) < hysteresis * expected_price(*best))) best = &t;
   if (best) plan.integrator = best->integrator;
 }
 
