@@ -16,6 +16,8 @@ void set_size(Camera& camera, const std::string& text);
 LoadOptions load_options(const std::vector<std::string>& defines, bool lenient);
 /// 8M and the like; option names it in messages.
 size_t parse_bytes(const std::string& option, const std::string& text);
+/// 90s, 5m, 1h, in seconds; option names it in messages.
+double parse_duration(const std::string& option, const std::string& text);
 /// Throws where the folder of a file that is to be written is missing: before the work rather than after it.
 void check_writable(const std::string& path);
 /// The same for a file that is written as it is named: a folder of that name is in its way.
