@@ -125,10 +125,12 @@ struct Animate : testing::Test {
     CLI::App app;
     add_animate(app);
     std::vector<std::string> arguments = {
-        "animate", in("room.xml"),          "-q", "--spp",         "2",         "--teach", "1", "--frames", frames,
+        "animate", in("room.xml"),          "-q", "--teach",       "1",         "--frames", frames,
         "-o",      in(out) + "/f_%02d.exr", "-D", "door=0.2..1.4", "--threads", "1"};
-    if (std::find(more.begin(), more.end(), "--integrator") == more.end())
-      more.insert(more.end(), {"--integrator", "guided-bdpt"});
+    const auto otherwise = [&](const char* option, const char* value) {
+      if (std::find(more.begin(), more.end(), option) == more.end()) more.insert(more.end(), {option, value});
+    };
+    otherwise("--spp", "2"), otherwise("--integrator", "guided-bdpt");
     arguments.insert(arguments.end(), more.begin(), more.end());
     std::reverse(arguments.begin(), arguments.end());
     app.parse(arguments);
