@@ -16,10 +16,10 @@ namespace ajar {
 struct Vpls {
   LightStore store;
   uint32_t pass = ~0u;   ///< that they are of
-  uint32_t paths = 512;  ///< light subpaths of a pass
-  double worth = 16;     ///< light subpaths that a join with the set counts for against a walked edge (V1)
+  uint32_t paths = 256;  ///< light subpaths of a pass
+  double worth = 256;    ///< light subpaths that a join with the set counts for against a walked edge (V1)
   double even = 0;       ///< vertices per area and light subpath; read where no field tells
-  int joins = 4;         ///< at the first vertex of a camera subpath that can be joined
+  int joins = 8;         ///< at each vertex of a camera subpath that can be joined
 };
 
 struct Job {

@@ -82,13 +82,14 @@ void join_next_event(Work& work) {
   charge_join(work.scratch, 1, camera.n);
 }
 
-void join_vpls(Work& work, int count) {
+void join_vpls(Work& work) {
   const Job& job = work.job;
   Scratch& scratch = work.scratch;
   const Subpath& camera = scratch.camera;
   const LightStore& store = job.vpls->store;
-  choose_some(store, camera[camera.n - 1], job.walk.max_edges + 1 - camera.n, count, work.sample.sampler.next1(),
-              scratch.sums, scratch.choices);
+  const Vertex& x = camera[camera.n - 1];
+  choose_some(store, x, job.walk.max_edges + 1 - camera.n, job.vpls->joins, work.sample.sampler.next1(), scratch.sums,
+              scratch.choices);
   for (const StoreChoice& choice : scratch.choices) {
     const LightStore::Place& at = *choice.place;
     Candidate c;
@@ -149,7 +150,6 @@ void trace_vpl(const Job& job, Sample& sample, Scratch& scratch) {
   Walk walk;
   start_camera(*job.scene, job.walk, sample.raster, sample.lens, camera, walk);
   Surface surface;
-  int joins = job.vpls->joins;
   do {
     ++scratch.counters.camera_rays;
     const bool hit = step(*job.scene, *job.accel, job.walk, camera, walk, surface);
@@ -166,8 +166,7 @@ void trace_vpl(const Job& job, Sample& sample, Scratch& scratch) {
     if (!goes_on(work)) return;
     if (camera.n > job.walk.max_edges || !connectable(camera[camera.n - 1].guide)) continue;
     join_next_event(work);
-    join_vpls(work, joins);
-    joins = 1;
+    join_vpls(work);
   } while (camera.n <= job.walk.max_edges && scatter(job.walk, sample.sampler, camera, walk));
   charge(scratch, scratch.ledger->camera_ticks);
 }
