@@ -9,6 +9,7 @@ class App;
 namespace ajar {
 
 void add_render(CLI::App& app);
+void add_animate(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_fields(CLI::App& app);

@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", std::string("ajar ") + ajar::version);
   ajar::add_render(app);
+  ajar::add_animate(app);
   ajar::add_compare(app);
   ajar::add_bench(app);
   ajar::add_fields(app);

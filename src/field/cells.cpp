@@ -19,6 +19,10 @@ CellKey make_key(int level, uint32_t bin, const glm::uvec3& c) {
   return (uint64_t(level + 1) << 59) | (uint64_t(bin) << 54) | (uint64_t(c.z) << 36) | (uint64_t(c.y) << 18) | c.x;
 }
 
+glm::uvec3 coordinates_of(CellKey key) {
+  return {key & most_coordinate, (key >> 18) & most_coordinate, (key >> 36) & most_coordinate};
+}
+
 // Where a key is among the slots, or the free slot where it would be.
 size_t slot_of(const CellTable& table, CellKey key) {
   const size_t mask = table.slots.size() - 1;
@@ -145,10 +149,21 @@ void set_divided(CellTable& table, CellKey key) { table.slots[slot_of(table, key
 
 int level_of(CellKey key) { return int(key >> 59) - 1; }
 
+Box cube_of(const CellTable& table, CellKey key) {
+  const glm::uvec3 c = coordinates_of(key);
+  if (!table.probes.empty()) {
+    const Vec3 p = table.probes[std::min(size_t(c.x) | size_t(c.y) << bits, table.probes.size() - 1)].p;
+    return {p, p};
+  }
+  const float edge = table.edge(level_of(key));
+  const Vec3 low = table.origin + Vec3(c) * edge;
+  return {low, low + edge};
+}
+
 CellKey parent_of(CellKey key) {
   const int level = level_of(key);
   if (level <= 0) return 0;
-  const glm::uvec3 c(key & most_coordinate, (key >> 18) & most_coordinate, (key >> 36) & most_coordinate);
+  const glm::uvec3 c = coordinates_of(key);
   return make_key(level - 1, uint32_t(key >> 54) & 31, c >> 1u);
 }
 

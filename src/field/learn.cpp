@@ -189,6 +189,9 @@ uint32_t append(Trees& out, const std::vector<Node>& nodes, Structure structure)
   return root;
 }
 
+// (G4): how much strata with so much evidence behind them are trusted.
+float mix_for(const LearnOptions& options, float weight) { return options.mix * weight / (weight + options.trust); }
+
 FieldCell learn_cell(Work& w, uint32_t cell, double area, double paths, Trees& out) {
   const FieldCell& old = w.field->cells[cell];
   const Tallies& t = *w.tallies;
@@ -211,7 +214,7 @@ FieldCell learn_cell(Work& w, uint32_t cell, double area, double paths, Trees& o
   float weight = 0;
   for (const Node& n : w.nodes)
     for (int i = 0; i < 16; ++i) weight += n.child[i] < 0 ? n.weight[i] : 0;
-  next.mix = bare > 0 ? w.options->mix * weight / (weight + w.options->trust) : 0;
+  next.mix = bare > 0 ? mix_for(*w.options, weight) : 0;
   const float seen = float(double(t.visits[cell]) / (area * paths));
   next.visits = old.visits > 0 ? 0.5f * (old.visits + seen) : seen;
   return next;
@@ -324,6 +327,18 @@ CellTable start_table(const Scene& scene, const LearnOptions& options) {
   return table;
 }
 
+// Less weight to all strata of a cell.
+void doubt_cell(Field& field, FieldCell& cell, float kept, const LearnOptions& options) {
+  float weight = 0;
+  std::vector<uint32_t> order = {cell.root};
+  for (size_t k = 0; k < order.size(); ++k)
+    for (int i = 0; i < 16; ++i) {
+      if (field.nodes[order[k]].is_divided(i)) order.push_back(field.nodes[order[k]].child(i));
+      weight += field.weight[16 * size_t(order[k]) + size_t(i)] *= kept;
+    }
+  if (cell.mix > 0) cell.mix = mix_for(options, weight);
+}
+
 }  // namespace
 
 Fields start_fields(const Scene& scene, double pixels, const LearnOptions& options) {
@@ -357,6 +372,18 @@ Fields learn(const Fields& fields, const Training& training, const Sightings& si
   add_cells(next, sightings, options);
   next.views = learn_views(fields.views, training.views, next.regions, 0.9f);
   restrict_to(next, options.guided);
+  return next;
+}
+
+Fields doubt(const Fields& fields, const std::vector<Box>& moved, float kept, const LearnOptions& options) {
+  Fields next = fields;
+  for (uint32_t c = 0; c < next.cells.size(); ++c) {
+    Box cube = cube_of(next.table, next.cells[c].key);
+    const float edge = next.table.edge(level_of(next.cells[c].key));
+    cube.lo -= edge, cube.hi += edge;
+    if (std::none_of(moved.begin(), moved.end(), [&](const Box& box) { return overlap(box, cube); })) continue;
+    for (Field* field : {&next.q, &next.w}) doubt_cell(*field, field->cells[c], kept, options);
+  }
   return next;
 }
 

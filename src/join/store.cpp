@@ -13,12 +13,12 @@ float flux_of(const Vertex& v) {
   return luminance(v.beta) * inv_pi * std::max(luminance(albedo(v.guide.bsdf, v.guide.wo_local)), 0.02f);
 }
 
-void put(LightStore::Block& b, uint32_t i, const Vertex& v, const LightStore::Place& at, double inner) {
+void put(LightStore::Block& b, uint32_t i, const Vertex& v, const LightStore::Place& at, float near) {
   const Vec3 n = v.guide.frame.n;
   b.x[i] = v.p.x, b.y[i] = v.p.y, b.z[i] = v.p.z;
   b.nx[i] = n.x, b.ny[i] = n.y, b.nz[i] = n.z;
   b.flux[i] = flux_of(v);
-  b.near[i] = near_of(v, inner);
+  b.near[i] = near;
   b.behind[i] = v.guide.bsdf.opaque ? 0.0f : -1.0f;
   b.region[i] = at.region, b.s[i] = at.s;
 }
@@ -57,13 +57,41 @@ void add(LightStore& store, const Subpath& light, double share) {
   store.vertices.insert(store.vertices.end(), light.vertices.begin(), light.vertices.begin() + last);
 }
 
-void finish(LightStore& store, double inner) {
+namespace {
+// near: of a place, by its number.
+template <class Near>
+void make_blocks(LightStore& store, const Near& near) {
   const uint32_t all = uint32_t(store.places.size()), n = (all + LightStore::width - 1) / LightStore::width;
   store.blocks.assign(n, {});
   for (uint32_t i = 0; i < all; ++i) {
     const LightStore::Place& at = store.places[i];
-    put(store.blocks[i % n], i / n, store.subpath(at).back(), at, inner);
+    put(store.blocks[i % n], i / n, store.subpath(at).back(), at, near(i));
   }
+}
+
+void apply_chances(const LightStore::Block& b, const Vertex& camera, Values& values) {
+  const uint32_t region = region_of(camera.guide);
+  if (region == no_region) return;
+  for (uint32_t i = 0; i < LightStore::width; ++i) values[i] *= chance(camera.guide.fields->views, region, b.region[i]);
+}
+}  // namespace
+
+void finish(LightStore& store, double inner) {
+  make_blocks(store, [&](uint32_t i) { return near_of(store.subpath(store.places[i]).back(), inner); });
+}
+
+void finish(LightStore& store, std::span<const float> near) {
+  make_blocks(store, [&](uint32_t i) { return near[i]; });
+}
+
+void append(LightStore& store, const LightStore& more) {
+  const uint32_t shift = uint32_t(store.vertices.size());
+  store.vertices.insert(store.vertices.end(), more.vertices.begin(), more.vertices.end());
+  for (LightStore::Place at : more.places) {
+    at.first += shift;
+    store.places.push_back(at);
+  }
+  store.paths += more.paths;
 }
 
 bool choose(const LightStore& store, const Vertex& camera, double inner, int most, Sampler& sampler, StoreChoice& out) {
@@ -74,9 +102,7 @@ bool choose(const LightStore& store, const Vertex& camera, double inner, int mos
   const LightStore::Block& b = store.blocks[block];
   Values values;
   expect(b, camera, near_of(camera, inner), most, values);
-  if (const uint32_t region = region_of(camera.guide); region != no_region)
-    for (uint32_t i = 0; i < LightStore::width; ++i)
-      values[i] *= chance(camera.guide.fields->views, region, b.region[i]);
+  apply_chances(b, camera, values);
   float sum = 0;
   Values sums;
   for (uint32_t i = 0; i < LightStore::width; ++i) sums[i] = sum += values[i];
@@ -87,6 +113,30 @@ bool choose(const LightStore& store, const Vertex& camera, double inner, int mos
   out.place = &store.places[i * n + block];
   out.weight = float(double(n) / store.paths) * sum / values[i];
   return true;
+}
+
+void choose_some(const LightStore& store, const Vertex& camera, int most, int count, float u, std::vector<float>& sums,
+                 std::vector<StoreChoice>& out) {
+  const size_t n = store.blocks.size();
+  out.clear();
+  sums.resize(n * LightStore::width);
+  float sum = 0;
+  for (size_t block = 0; block < n; ++block) {
+    Values values;
+    expect(store.blocks[block], camera, 0, most, values);
+    apply_chances(store.blocks[block], camera, values);
+    for (uint32_t i = 0; i < LightStore::width; ++i) sums[block * LightStore::width + i] = sum += values[i];
+  }
+  if (!(sum > 0) || !(sum < infinity)) return;
+  size_t at = 0;
+  for (int k = 0; k < count; ++k) {
+    const float mark = (float(k) + u) / float(count) * sum;
+    while (at + 1 < sums.size() && !(mark < sums[at])) ++at;
+    const float value = sums[at] - (at > 0 ? sums[at - 1] : 0);
+    if (!(value > 0)) continue;  // rounding, behind the last
+    const uint32_t i = uint32_t(at % LightStore::width), block = uint32_t(at / LightStore::width);
+    out.push_back({&store.places[i * n + block], float(double(sum) / (double(count) * value * store.paths))});
+  }
 }
 
 }  // namespace ajar

@@ -12,6 +12,16 @@
 
 namespace ajar {
 
+/// The light vertices of a pass as virtual point lights, the same for all pixels.
+struct Vpls {
+  LightStore store;
+  uint32_t pass = ~0u;   ///< that they are of
+  uint32_t paths = 256;  ///< light subpaths of a pass
+  double worth = 256;    ///< light subpaths that a join with the set counts for against a walked edge (V1)
+  double even = 0;       ///< vertices per area and light subpath; read where no field tells
+  int joins = 8;         ///< at each vertex of a camera subpath that can be joined
+};
+
 struct Job {
   const Scene* scene = nullptr;
   const Accel* accel = nullptr;
@@ -21,6 +31,7 @@ struct Job {
   bool techniques = false;
   bool next_event = true;
   bool stored = false;  ///< light subpaths were traced before, and are in the store
+  const Vpls* vpls = nullptr;
   const Learning* learning = nullptr;  ///< null: unguided
   Training* training = nullptr;
 };
@@ -41,6 +52,8 @@ struct Sample {
 /// Storage of one thread at work on one chunk; kept from chunk to chunk. Threads share no cache line.
 struct alignas(64) Scratch {
   Subpath camera, light;
+  std::vector<float> sums;  ///< of choices
+  std::vector<StoreChoice> choices;
   LightStore store;  ///< of the chunk
   struct Part {
     Sample sample;
@@ -65,7 +78,11 @@ using Trace = void (*)(const Job&, Sample&, Scratch&);
 void trace_path(const Job&, Sample&, Scratch&);
 void trace_bdpt(const Job&, Sample&, Scratch&);
 void trace_light(const Job&, Sample&, Scratch&);
-/// The first half of guided-bdpt: the light subpath of one sample, put into the chunk's store. The second is trace_bdpt.
+void trace_vpl(const Job&, Sample&, Scratch&);
+/// Traces the light vertices of a pass.
+void place_vpls(const Job&, uint32_t pass, std::vector<Scratch>&, Vpls&);
+/// The first half of guided-bdpt: the light subpath of one sample, put into the chunk's store. The second is
+/// trace_bdpt.
 void trace_light_half(const Job&, Sample&, Scratch&);
 
 /// The time since the last charge goes to a part of the ledger.

@@ -13,7 +13,7 @@ bool is_frozen(const Learning& l) { return l.train > 0 && !is_young(l); }
 
 // Passes from one lesson to the next.
 uint32_t interval(const Learning& l) {
-  return is_young(l) ? 1 : rare_records << std::min(l.fields.generation - young_generations, 6u);
+  return is_young(l) ? l.lesson : rare_records << std::min(l.fields.generation - young_generations, 6u);
 }
 
 }  // namespace

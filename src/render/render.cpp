@@ -8,6 +8,7 @@
 
 #include "ajar/core/error.h"
 #include "ajar/core/parallel.h"
+#include "ajar/field/probes.h"
 #include "job.h"
 
 namespace ajar {
@@ -18,12 +19,15 @@ struct Integrator {
   Trace trace;
   bool splats;
   bool guided = false;
+  bool vpls = false;  ///< trains its fields by trace_bdpt first, if it is guided
 };
 constexpr Integrator integrators[] = {{"path", trace_path, false},
                                       {"bdpt", trace_bdpt, true},
                                       {"light", trace_light, true},
                                       {"guided-path", trace_bdpt, false, true},
-                                      {"guided-bdpt", trace_bdpt, true, true}};
+                                      {"guided-bdpt", trace_bdpt, true, true},
+                                      {"vpl", trace_vpl, true, true, true},
+                                      {"plain-vpl", trace_vpl, false, false, true}};
 
 const Integrator& find_integrator(const std::string& name) {
   for (const Integrator& i : integrators)
@@ -33,6 +37,9 @@ const Integrator& find_integrator(const std::string& name) {
 
 // Chunks traced between two merges: bounds the memory of splats and the time to the next look at the clock.
 constexpr uint32_t batch_chunks = 256;
+
+// Passes that teach fields before light vertices are placed through them.
+constexpr uint32_t vpl_training = 16;
 
 // Fewest, so that every thread finds work.
 constexpr uint32_t least_chunks = 16;
@@ -133,6 +140,20 @@ void note_rejected(RenderStats& stats, const std::vector<uint64_t>& pixels, cons
                                          p / uint64_t(film.width), film.dropped + film.passes, seed));
 }
 
+// Light vertices per area and subpath where nothing is learned: as if two of each were spread over all surfaces.
+double even_density(const Scene& scene) { return 2 / std::max(area(scene), 1e-30); }
+
+// The job of a pass that joins virtual point lights, which it places.
+Job with_vpls(Job job, const Film& film, std::vector<Scratch>& scratches, Vpls& vpls) {
+  job.vpls = &vpls;
+  job.stored = false;
+  job.walk.light_paths = 0, job.walk.inner_share = 0;  // the other weights are of s = 0 and s = 1 alone
+  const uint32_t pass = film.dropped + film.passes;
+  if (vpls.pass != pass) place_vpls(job, pass, scratches, vpls);
+  vpls.pass = pass;
+  return job;
+}
+
 void teach(RenderState& state, const RenderOptions& options) {
   const double wall = wall_seconds(), cpu = process_cpu_seconds();
   const uint32_t dropped = state.film.dropped;
@@ -172,17 +193,20 @@ RenderState start_render(const Scene& scene, const RenderOptions& options) {
   RenderState state;
   const Integrator& integrator = find_integrator(options.integrator);
   state.film = make_film(scene.camera, scene.filter, integrator.splats);
-  if (integrator.guided) state.learning = start_learning(scene, state.film, options.learn);
+  if (!integrator.guided) return state;
+  LearnOptions learn = options.learn;
+  if (integrator.vpls && learn.train == 0) learn.train = vpl_training;
+  state.learning = start_learning(scene, state.film, learn);
   return state;
 }
 
 void render(const Scene& scene, const Accel& accel, const RenderOptions& options, RenderState& state,
             const Monitor& monitor) {
-  const Trace trace = find_integrator(options.integrator).trace;
+  const Integrator& integrator = find_integrator(options.integrator);
   Film& film = state.film;
   RenderStats& stats = state.stats;
   Job job = make_job(scene, accel, options, film);
-  if (find_integrator(options.integrator).guided) {
+  if (integrator.guided) {
     job.learning = &state.learning, job.training = &state.learning.training;
     job.walk.fields = &state.learning.fields;
     job.walk.inner_share = film.splats ? 1 : 0;
@@ -202,6 +226,8 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   Threads threads(options.threads);
   std::vector<Scratch> scratches(size_t(threads.count()));
   Batch batch;
+  Vpls vpls;
+  vpls.even = integrator.vpls ? even_density(scene) : 0;
   const uint32_t all = chunk_count(film);
   const auto out_of_budget = [&] {
     read_clocks();
@@ -222,7 +248,10 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
     batch.strategies.resize(count);
     batch.ledgers.assign(count, {});
     batch.rejected_at.resize(count);
+    const bool joins_vpls = integrator.vpls && !in_training(state.learning);
+    const Trace trace = integrator.vpls && !joins_vpls ? trace_bdpt : integrator.trace;
     threads.run([&] {
+      const Job job_now = joins_vpls ? with_vpls(job, film, scratches, vpls) : job;
       parallel_for(count, [&](uint32_t i) {
         Scratch& scratch = scratches[thread_slot()];
         batch.splats[i].clear();
@@ -230,7 +259,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
         scratch.splats = &batch.splats[i];
         scratch.ledger = &batch.ledgers[i];
         scratch.strategies = job.techniques ? &batch.strategies[i] : nullptr;
-        trace_chunk(job, trace, film, from + i, scratch);
+        trace_chunk(job_now, trace, film, from + i, scratch);
         batch.rejected_at[i] = scratch.rejected_at;
       });
       if (film.splats) merge(film, batch.splats);

@@ -2,65 +2,11 @@
 
 #include "ajar/core/error.h"
 #include "ajar/core/parallel.h"
+#include "bounds.h"
 #include "solid.h"
 
 namespace ajar {
 namespace {
-
-struct Box {
-  Vec3 lo{infinity}, hi{-infinity};
-  bool empty() const { return !(lo.x <= hi.x); }
-  void add(const Vec3& p) { lo = glm::min(lo, p), hi = glm::max(hi, p); }
-  void add(const Box& b) { lo = glm::min(lo, b.lo), hi = glm::max(hi, b.hi); }
-};
-
-constexpr size_t grain = 16384;
-
-// Joins what f(from, to) gives for blocks of [0, n), in their order.
-template <class T, class F, class Join>
-T reduce(size_t n, T value, const F& f, const Join& join) {
-  std::vector<T> parts((n + grain - 1) / grain);
-  parallel_for(parts.size(), [&](size_t b) { parts[b] = f(b * grain, std::min(n, (b + 1) * grain)); });
-  for (const T& part : parts) value = join(value, part);
-  return value;
-}
-
-Box box_of(const std::vector<Vec3>& points) {
-  return reduce(
-      points.size(), Box{},
-      [&](size_t from, size_t to) {
-        Box b;
-        for (size_t i = from; i < to; ++i) b.add(points[i]);
-        return b;
-      },
-      [](Box a, const Box& b) {
-        a.add(b);
-        return a;
-      });
-}
-
-// Box of the unit object under its transform; its extent along each world axis has a closed form.
-Box box_of(const Shape& shape) {
-  const Vec3 x(shape.to_world[0]), y(shape.to_world[1]), z(shape.to_world[2]), o(shape.to_world[3]);
-  const Vec3 ring = glm::sqrt(x * x + y * y);
-  Box b;
-  if (shape.kind == ShapeKind::sphere) {
-    const Vec3 r = glm::sqrt(x * x + y * y + z * z);
-    b.add(o - r), b.add(o + r);
-  } else {
-    b.add(o - ring), b.add(o + ring);
-    if (shape.kind == ShapeKind::cylinder) b.add(o + z - ring), b.add(o + z + ring);
-  }
-  return b;
-}
-
-Box box_of(const Mat4& m, const Box& box) {
-  Box b;
-  if (box.empty()) return b;
-  for (int i = 0; i < 8; ++i)
-    b.add(Vec3(m * Vec4(i & 1 ? box.hi.x : box.lo.x, i & 2 ? box.hi.y : box.lo.y, i & 4 ? box.hi.z : box.lo.z, 1)));
-  return b;
-}
 
 float farthest2(const std::vector<Vec3>& points, const Vec3& center) {
   return reduce(

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ajar/core/frame.h"
+#include "ajar/scene/motion.h"
 #include "ajar/scene/surface.h"
 
 namespace ajar {
@@ -53,6 +54,8 @@ void insert(CellTable& table, CellKey key, uint32_t cell);
 uint32_t cell_of(const CellTable& table, CellKey key);
 void set_divided(CellTable& table, CellKey key);
 int level_of(CellKey key);
+/// The cube of a cell; of a probe, its point.
+Box cube_of(const CellTable& table, CellKey key);
 /// Key of the cell that contains this one, 0 at level 0.
 CellKey parent_of(CellKey key);
 

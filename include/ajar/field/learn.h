@@ -28,6 +28,10 @@ Fields start_fields(const Scene& scene, double pixels, const LearnOptions& optio
 /// paths: pairs of camera and light subpaths that were recorded.
 Fields learn(const Fields& fields, const Training& training, const Sightings& sightings, double paths,
              const LearnOptions& options);
+/// Fields of a scene before something in it moved, for the scene after: of the evidence of cells that the boxes touch,
+/// grown by the cell's own edge, the share `kept` counts from now on, and less of their mix is the field's. Values stay
+/// as a first guess.
+Fields doubt(const Fields& fields, const std::vector<Box>& moved, float kept, const LearnOptions& options);
 /// Takes the field away from the side that is not to be guided: its mix is 0.
 void restrict_to(Fields& fields, Guided guided);
 

@@ -46,9 +46,18 @@ void clear(LightStore& store);
 void add(LightStore& store, const Subpath& light, double share);
 /// Makes the blocks, when all is added. inner as in WalkOptions.
 void finish(LightStore& store, double inner);
+/// The same with what near of each place is to be.
+void finish(LightStore& store, std::span<const float> near);
+/// Adds all of another store, before the blocks are made.
+void append(LightStore& store, const LightStore& more);
 /// Draws from the places of one block in proportion to what they would bring unoccluded times the chance that they are
 /// seen (resampling: Talbot et al. 2005). most: largest s. False where none would bring anything. Takes one pair of
 /// numbers.
 bool choose(const LightStore& store, const Vertex& camera, double inner, int most, Sampler& sampler, StoreChoice& out);
+
+/// Draws `count` from all places, evenly spaced over the sums of what they would bring (systematic sampling): weights
+/// add up to what all of them stand for. u in [0, 1). sums: storage.
+void choose_some(const LightStore& store, const Vertex& camera, int most, int count, float u, std::vector<float>& sums,
+                 std::vector<StoreChoice>& out);
 
 }  // namespace ajar

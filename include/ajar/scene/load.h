@@ -3,15 +3,30 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 
 #include "ajar/scene/scene.h"
 
 namespace ajar {
 
+/// What one load leaves for the next of the same scene at another time: images and meshes that files hold, which so are
+/// read once. Who changes the files between two loads is not seen.
+struct LoadCache {
+  struct Placed {
+    std::string source;  ///< file and options
+    glm::dmat4 to_world{1};
+    Mesh mesh;
+  };
+  std::map<std::string, Image> images;
+  std::map<size_t, Placed> meshes;  ///< by the shape that they are of; one that moved is read again
+};
+
 struct LoadOptions {
   std::map<std::string, std::string> defines;  ///< -D name=value; a name that the scene does not know is an error
-  bool lenient = false;  ///< unknown elements become notes (unknown bsdf: grey diffuse; others left out)
+  bool lenient = false;        ///< unknown elements become notes (unknown bsdf: grey diffuse; others left out)
+  std::optional<double> time;  ///< at which <animation>s are read; nothing: each at its first key
+  LoadCache* cache = nullptr;  ///< read and filled, where given
 };
 
 /// Reads a scene as docs/scenes.md describes. Scene::notes holds what was done differently from what the file says.

@@ -77,9 +77,10 @@ struct Instance {
 
 /// What the file says about rendering; the command line overrules it.
 struct Hints {
-  std::string integrator;  ///< as named by the file
-  int max_depth = -1;      ///< edges, -1 unlimited
-  int spp = 0;             ///< 0: not said
+  std::string integrator;                               ///< as named by the file
+  int max_depth = -1;                                   ///< edges, -1 unlimited
+  int spp = 0;                                          ///< 0: not said
+  double first_time = infinity, last_time = -infinity;  ///< of all <animation> keys; first > last: nothing moves
 };
 
 struct Scene {

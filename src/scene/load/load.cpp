@@ -75,7 +75,7 @@ void load_child(Loader& loader, const Node& node, bool& has_sensor, bool& has_in
 
 Scene load(const std::string& text, const std::string& folder, const std::string& name, const LoadOptions& options) {
   const Document document = read_document(text, folder, name, options.defines);
-  Loader loader{document, options.lenient};
+  Loader loader{document, options.lenient, options.time, options.cache};
   loader.scene.notes = document.notes;
   collect_ids(loader, document.root);
   count_meshes(loader, document.root);

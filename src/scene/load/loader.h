@@ -26,6 +26,8 @@ enum class Colour { reflectance, ratio, emission };
 struct Loader {
   const Document& document;
   bool lenient = false;
+  std::optional<double> time;  ///< LoadOptions::time
+  LoadCache* cache = nullptr;  ///< LoadOptions::cache
   Scene scene;
   std::unordered_map<std::string, const Node*> ids;
   std::unordered_map<const Node*, uint32_t> bsdfs, groups;      ///< read already

@@ -117,6 +117,20 @@ void cylinder(Params& p, Shape& shape) {
 void rectangle(Params& p, Shape& shape) { simple_mesh(p, shape, make_rectangle(), shape_to_world(p, true)); }
 void cube(Params& p, Shape& shape) { simple_mesh(p, shape, make_cube(), shape_to_world(p, false)); }
 
+// The mesh of the shape that comes next, if an earlier load placed it where it is now.
+bool take_placed(const Loader& loader, const std::string& source, const DMat4& m, Mesh& out) {
+  if (!loader.cache) return false;
+  const auto kept = loader.cache->meshes.find(loader.scene.shapes.size());
+  if (kept == loader.cache->meshes.end() || kept->second.source != source || kept->second.to_world != m) return false;
+  out = kept->second.mesh;
+  return true;
+}
+
+void keep_placed(Loader& loader, const std::string& source, const DMat4& m, const Mesh& mesh) {
+  if (loader.cache)
+    loader.cache->meshes.insert_or_assign(loader.scene.shapes.size(), LoadCache::Placed{source, m, mesh});
+}
+
 // Meshes from files: what more than one shape names is parsed once, where moving it afterwards changes nothing.
 template <class Read>
 void file_mesh(Params& p, Shape& shape, const std::string& key, MeshOptions options, const Read& read) {
@@ -130,6 +144,10 @@ void file_mesh(Params& p, Shape& shape, const std::string& key, MeshOptions opti
     const std::string exact = fmt::format("{}|{}{}{}|{}", key, options.face_normals, options.flip_normals,
                                           options.flip_v, options.max_smooth_angle);
     const int left = --p.loader.mesh_uses[key];
+    if (take_placed(p.loader, exact, m, mesh)) {
+      shape.mesh = add_mesh(p, std::move(mesh));
+      return;
+    }
     const auto kept = p.loader.meshes.find(exact);
     const bool known = kept != p.loader.meshes.end();
     if ((left > 0 || known) && is_similarity(m) && determinant(m) > 0) {
@@ -140,6 +158,7 @@ void file_mesh(Params& p, Shape& shape, const std::string& key, MeshOptions opti
       options.to_world = Mat4(m);
       mesh = read(options);
     }
+    keep_placed(p.loader, exact, m, mesh);
   } catch (const Error& error) {
     fail(p.loader, p.node, error.what());
   }

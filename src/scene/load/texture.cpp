@@ -107,6 +107,11 @@ Texture bitmap(Params& p) {
   return t;
 }
 
+const Image* find_value(const std::map<std::string, Image>& images, const std::string& key) {
+  const auto found = images.find(key);
+  return found == images.end() ? nullptr : &found->second;
+}
+
 }  // namespace
 
 uint32_t load_image_file(Loader& loader, const Node& node, const std::string& path, bool raw, double gamma) {
@@ -115,14 +120,14 @@ uint32_t load_image_file(Loader& loader, const Node& node, const std::string& pa
   const std::string key = fmt::format("{}|{}|{}", raw, raw ? 0 : std::max(gamma, 0.0), path);
   const auto found = loader.images.find(key);
   if (found != loader.images.end()) return found->second;
-  Image image;
+  const uint32_t index = uint32_t(loader.scene.images.size());
+  const Image* kept = loader.cache ? find_value(loader.cache->images, key) : nullptr;
   try {
-    image = load_image(path, raw, raw ? 0.0f : float(std::max(gamma, 0.0)));
+    loader.scene.images.push_back(kept ? *kept : load_image(path, raw, raw ? 0.0f : float(std::max(gamma, 0.0))));
   } catch (const Error& error) {
     fail(loader, node, error.what());
   }
-  const uint32_t index = uint32_t(loader.scene.images.size());
-  loader.scene.images.push_back(std::move(image));
+  if (loader.cache && !kept) loader.cache->images.emplace(key, loader.scene.images.back());
   loader.images.emplace(key, index);
   return index;
 }

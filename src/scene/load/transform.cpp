@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 #include "loader.h"
 
@@ -61,6 +63,84 @@ DMat4 step_of(const Loader& loader, const Node& step) {
   fail(loader, step, "is unknown inside <transform>; known are translate, rotate, scale, lookat, matrix");
 }
 
+DMat4 affine_of(const Loader& loader, const Node& node) {
+  DMat4 m = transform_of(loader, node);
+  const double w = m[3][3];
+  for (int column = 0; column < 3; ++column)
+    if (std::abs(m[column][3]) > 1e-6 * std::abs(w)) fail(loader, node, "is projective; Ajar takes affine ones");
+  if (!(std::abs(w) > 0)) fail(loader, node, "is singular");
+  if (w != 1) m = m * (1 / w);
+  return m;
+}
+
+// An affine map as a rotation after a stretch (polar decomposition), which can be blended.
+struct Pose {
+  DVec3 translation{0};
+  glm::dquat rotation{1, 0, 0, 0};
+  glm::dmat3 stretch{1};
+};
+
+Pose pose_of(const Loader& loader, const Node& node, const DMat4& m) {
+  const glm::dmat3 linear(m);
+  glm::dmat3 r = linear;
+  // Newton's iteration for the orthogonal factor (Higham 1986).
+  for (int i = 0; i < 100; ++i) {
+    if (!(std::abs(glm::determinant(r)) > 0))
+      fail(loader, node, "is singular; between keys of an <animation> every axis needs a scale");
+    const glm::dmat3 next = 0.5 * (r + glm::inverse(glm::transpose(r)));
+    double change = 0;
+    for (int c = 0; c < 3; ++c) change = std::max(change, glm::length(next[c] - r[c]));
+    r = next;
+    if (change < 1e-14) break;
+  }
+  if (glm::determinant(r) < 0) r = -r;  // a mirror goes with the stretch
+  return {DVec3(m[3]), glm::quat_cast(r), glm::transpose(r) * linear};
+}
+
+DMat4 blend(const Pose& a, const Pose& b, double share) {
+  const glm::dmat3 linear =
+      glm::mat3_cast(glm::slerp(a.rotation, b.rotation, share)) * (a.stretch * (1 - share) + b.stretch * share);
+  DMat4 m(linear);
+  m[3] = DMat4::col_type(glm::mix(a.translation, b.translation, share), 1);
+  return m;
+}
+
+// The keys of an <animation>, in the order of their times.
+std::map<double, const Node*> keys_of(Loader& loader, const Node& node) {
+  std::map<double, const Node*> keys;
+  for (const Node& key : node.children) {
+    if (key.tag != "transform") fail(loader, key, "is unknown inside <animation>; it holds <transform time=\"...\">");
+    if (attribute(key, "time") == nullptr) fail(loader, key, "needs time=\"...\"");
+    const double time = number_attribute(loader, key, "time", 0);
+    if (!keys.emplace(time, &key).second) fail(loader, key, "has the time of another <transform>");
+    Hints& hints = loader.scene.hints;
+    hints.first_time = std::min(hints.first_time, time), hints.last_time = std::max(hints.last_time, time);
+  }
+  if (keys.empty()) fail(loader, node, "needs <transform time=\"...\"> inside");
+  return keys;
+}
+
+bool has_transform(const Params& params, const char* name) {
+  return std::any_of(params.node.children.begin(), params.node.children.end(),
+                     [&](const Node& child) { return child.tag == "transform" && child.name == name; });
+}
+
+// The transform at the loader's time: between two keys, rotations are blended along the shortest way. Before the first
+// and after the last it rests.
+DMat4 animated(Loader& loader, const Node& node) {
+  const std::map<double, const Node*> keys = keys_of(loader, node);
+  const double time = loader.time.value_or(keys.begin()->first);
+  const auto after = keys.lower_bound(time);
+  if (after == keys.end()) return affine_of(loader, *std::prev(after)->second);
+  const DMat4 b = affine_of(loader, *after->second);
+  if (after == keys.begin() || after->first == time) return b;
+  const auto before = std::prev(after);
+  const DMat4 a = affine_of(loader, *before->second);
+  if (a == b) return a;
+  return blend(pose_of(loader, *before->second, a), pose_of(loader, *after->second, b),
+               (time - before->first) / (after->first - before->first));
+}
+
 }  // namespace
 
 DMat4 transform_of(const Loader& loader, const Node& node) {
@@ -74,20 +154,17 @@ DMat4 transform_of(const Loader& loader, const Node& node) {
 }
 
 DMat4 to_world(Params& params, const char* name) {
-  for (const Node& child : params.node.children)
-    if (child.tag == "animation" && child.name == name)
-      fail(params.loader, child, "moving objects are not supported; give one <transform>");
+  for (size_t i = 0; i < params.node.children.size(); ++i) {
+    const Node& child = params.node.children[i];
+    if (child.tag != "animation" || child.name != name) continue;
+    if (has_transform(params, name)) fail(params.loader, child, "stands beside a <transform>; one of them has to go");
+    params.used[i] = true;
+    return animated(params.loader, child);
+  }
   const Node* node = find(params, {name});
   if (node == nullptr) return DMat4(1);
   if (node->tag != "transform") fail(params.loader, *node, "should be a <transform>");
-  DMat4 m = transform_of(params.loader, *node);
-  const double w = m[3][3];
-  for (int column = 0; column < 3; ++column)
-    if (std::abs(m[column][3]) > 1e-6 * std::abs(w))
-      fail(params.loader, *node, "is projective; Ajar takes affine ones");
-  if (!(std::abs(w) > 0)) fail(params.loader, *node, "is singular");
-  if (w != 1) m = m * (1 / w);
-  return m;
+  return affine_of(params.loader, *node);
 }
 
 bool is_similarity(const DMat4& m) {

@@ -1,4 +1,7 @@
 // <transform> in all its steps.
+#include <filesystem>
+#include <fstream>
+
 #include "scene_text.h"
 
 namespace ajar {
@@ -70,8 +73,85 @@ TEST(Transform, WrongOnesAreErrors) {
   EXPECT_SAYS(error("<lookat origin='0,0,0' target='0,2,0' up='0,1,0'/>"), "up points along");
   EXPECT_SAYS(error("<lookat target='0,2,0' up='0,1,0'/>"), "needs origin");
   EXPECT_SAYS(error("\n<turn x='1'/>"), "test.xml:3: <turn>: is unknown inside <transform>");
-  EXPECT_SAYS(error_of("<shape type='cube'><animation name='to_world'/></shape>"), "moving objects");
   EXPECT_SAYS(error_of("<shape type='cube'><float name='to_world' value='1'/></shape>"), "should be a <transform>");
+}
+
+// Where an <animation> of these keys takes a point at a time.
+Vec3 moved_at(std::optional<double> time, const std::string& keys, const Vec3& p) {
+  LoadOptions options;
+  options.time = time;
+  const Scene s =
+      load_inside("<shape type='disk'><animation name='toWorld'>" + keys + "</animation></shape>", options);
+  return Vec3(s.shapes[0].to_world * Vec4(p, 1));
+}
+
+TEST(Animation, RestsBeforeAndAfterItsKeys) {
+  const std::string keys =
+      "<transform time='3'><translate x='5'/></transform><transform time='1'><translate x='1'/></transform>";
+  EXPECT_RGB(moved_at({}, keys, {0, 0, 0}), 1, 0, 0, 1e-6);
+  EXPECT_RGB(moved_at(-1, keys, {0, 0, 0}), 1, 0, 0, 1e-6);
+  EXPECT_RGB(moved_at(1, keys, {0, 0, 0}), 1, 0, 0, 1e-6);
+  EXPECT_RGB(moved_at(1.5, keys, {0, 0, 0}), 2, 0, 0, 1e-6);
+  EXPECT_RGB(moved_at(3, keys, {0, 0, 0}), 5, 0, 0, 1e-6);
+  EXPECT_RGB(moved_at(9, keys, {0, 0, 0}), 5, 0, 0, 1e-6);
+}
+
+TEST(Animation, TurnsRatherThanSqueezes) {
+  const std::string keys =
+      "<transform time='0'><scale value='2'/></transform>"
+      "<transform time='1'><scale value='4'/><rotate z='1' angle='120'/><translate y='1'/></transform>";
+  const double half = std::sqrt(0.75);
+  EXPECT_RGB(moved_at(0.5, keys, {1, 0, 0}), 1.5, 3 * half + 0.5, 0, 1e-5);
+  const std::string mirrored =
+      "<transform time='0'><scale x='-1'/></transform>"
+      "<transform time='1'><scale x='-1'/><rotate z='1' angle='90'/></transform>";
+  EXPECT_RGB(moved_at(0.5, mirrored, {1, 0, 0}), -std::sqrt(0.5), -std::sqrt(0.5), 0, 1e-5);
+}
+
+TEST(Animation, TellsWhenItsKeysAre) {
+  const Scene still = load_inside("<shape type='cube'/>");
+  EXPECT_GT(still.hints.first_time, still.hints.last_time);
+  const Scene s = load_inside("<shape type='cube'><animation name='to_world'><transform time='-1'/>"
+                              "<transform time='2.5'/></animation></shape>");
+  EXPECT_EQ(s.hints.first_time, -1);
+  EXPECT_EQ(s.hints.last_time, 2.5);
+}
+
+TEST(Animation, WrongOnesAreErrors) {
+  const auto wrong = [](const std::string& keys, const std::string& beside = "") {
+    return error_of("<shape type='cube'>" + beside + "<animation name='to_world'>" + keys + "</animation></shape>");
+  };
+  EXPECT_SAYS(wrong(""), "needs <transform time=");
+  EXPECT_SAYS(wrong("<transform/>"), "needs time=");
+  EXPECT_SAYS(wrong("<transform time='soon'/>"), "\"soon\" is not a number");
+  EXPECT_SAYS(wrong("<float name='x' value='1'/>"), "is unknown inside <animation>");
+  EXPECT_SAYS(wrong("<transform time='1'/><transform time='1'/>"), "the time of another");
+  EXPECT_SAYS(wrong("<transform time='1'/>", "<transform name='to_world'/>"), "stands beside a <transform>");
+}
+
+// What a first load read from files, a second one need not: the file may even be gone.
+TEST(LoadCache, ReadsWhatStaysOnce) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "load_cache";
+  std::filesystem::create_directories(folder);
+  const std::string file = (folder / "triangle.obj").string();
+  std::ofstream(file) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  LoadCache cache;
+  LoadOptions options;
+  options.cache = &cache;
+  const auto load_at = [&](double time, const char* to) {
+    options.time = time;
+    return load_inside("<shape type='obj'><string name='filename' value='" + file +
+                           "'/><animation name='to_world'><transform time='0'/><transform time='1'><translate x='" + to +
+                           "'/></transform></animation></shape>",
+                       options);
+  };
+  const Scene first = load_at(0, "1");
+  std::ofstream(file) << "f 1 2 3\n";  // names vertices that are not there: whoever reads it throws
+  const Scene again = load_at(0, "1");
+  EXPECT_EQ(again.meshes[0].positions, first.meshes[0].positions);
+  EXPECT_EQ(again.meshes[0].triangles, first.meshes[0].triangles);
+  EXPECT_THROW(load_at(1, "1"), Error);
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -1,0 +1,331 @@
+// ajar animate: renders the frames of an animation, one after another, with what frames have in common kept.
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "ajar/core/error.h"
+#include "arguments.h"
+#include "commands.h"
+#include "frames.h"
+#include "progress.h"
+#include "stop.h"
+#include "summary.h"
+
+namespace ajar {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::string scene, out, frames, keyframes, at, size, time, cpu_time, integrator, guide = "both", field_memory,
+                                                                                   coherent = "on", reference, video;
+  std::vector<std::string> defines;
+  SequenceOptions sequence;
+  int spp = 0, max_depth = std::numeric_limits<int>::min(), threads = 0;
+  uint64_t seed = 0;
+  double fps = 24;
+  bool half = false, quiet = false, lenient = false;
+};
+
+constexpr const char* coherences[] = {"on", "fields", "numbers", "off"};
+
+RenderOptions render_options(const Arguments& a, const Scene& scene) {
+  RenderOptions o;
+  const auto known = integrator_names();
+  const auto is_known = [&](const std::string& name) {
+    return std::find(known.begin(), known.end(), name) != known.end();
+  };
+  if (!a.integrator.empty() && !is_known(a.integrator))
+    throw Error(fmt::format("--integrator {}: unknown; known are {}", a.integrator, fmt::join(known, ", ")));
+  o.integrator = !a.integrator.empty()              ? a.integrator
+                 : is_known(scene.hints.integrator) ? scene.hints.integrator
+                                                    : std::string("guided-bdpt");
+  o.spp = uint32_t(a.spp > 0 ? a.spp : scene.hints.spp > 0 ? scene.hints.spp : int(o.spp));
+  if (!a.time.empty()) o.seconds = parse_duration("--time", a.time);
+  if (!a.cpu_time.empty()) o.cpu_seconds = parse_duration("--cpu-time", a.cpu_time);
+  o.seed = a.seed;
+  o.threads = a.threads;
+  o.max_depth = a.max_depth != std::numeric_limits<int>::min() ? a.max_depth : scene.hints.max_depth;
+  if (o.max_depth < -1 || o.max_depth == 0)
+    throw Error(fmt::format("--max-depth {}: -1 for unlimited, 1 or more edges otherwise", o.max_depth));
+  if (!is_guided(o.integrator) && (a.guide != "both" || !a.field_memory.empty()))
+    throw Error(fmt::format("{}: the integrator {} learns no fields; add --integrator guided-bdpt",
+                            a.guide != "both" ? "--guide" : "--field-memory", o.integrator));
+  o.learn.guided = a.guide == "camera" ? Guided::camera : a.guide == "light" ? Guided::light : Guided::both;
+  if (!a.field_memory.empty()) o.learn.memory = parse_bytes("--field-memory", a.field_memory);
+  return o;
+}
+
+// One animation at work.
+struct Work {
+  const Arguments& arguments;
+  Shooting shooting;
+  FramePattern pattern, png;
+  std::string folder;
+  RenderOptions options;
+  SequenceOptions sequence;
+  std::string key;       // of the whole animation, without budgets
+  bool carries = false;  // fields
+  std::optional<Carried> carried;
+  std::vector<int> to_do;
+  int done = 0;  // of these
+  double began = 0;
+  double shown = -infinity;
+};
+
+// Everything that decides the bytes of all frames but their budgets.
+std::string animation_key(const Work& w, const Scene& scene) {
+  Run run;
+  run.scene_path = w.arguments.scene;
+  run.options = w.options;
+  run.defines = w.arguments.defines;
+  const Timeline& t = w.shooting.timeline;
+  const SequenceOptions& s = w.sequence;
+  std::string key = fmt::format("{} | {} frames, {}, teach {} {}, forget {:g} | ",  // the budgets are each frame's own
+                                checkpoint_key(run, make_film(scene.camera, scene.filter, false)), t.frames.count,
+                                w.arguments.coherent, s.begin, s.teach, s.forget);
+  for (int f = 0; f < t.frames.count; ++f) key += describe(t, f) + ";";
+  return fmt::format("{:016x} {}", checksum(key.data(), key.size(), 0),
+                     fs::path(w.arguments.scene).filename().string());
+}
+
+std::string frame_key(const Work& w, int frame) {
+  const RenderOptions& o = w.options;
+  const std::string budget = o.seconds > 0 || o.cpu_seconds > 0
+                                 ? fmt::format("{:g} s, {:g} CPU s", o.seconds, o.cpu_seconds)
+                                 : fmt::format("{} spp", o.spp);
+  return fmt::format("{} frame {} {}, {}", w.key, frame, describe(w.shooting.timeline, frame), budget);
+}
+
+// Whether the frame is there as it should be.
+bool is_done(const Work& w, int frame) {
+  const std::string path = frame_name(w.pattern, frame);
+  if (!fs::exists(path)) return false;
+  const Metadata metadata = read_metadata(path);
+  const auto found = metadata.find("ajar:frame");
+  if (found != metadata.end() && found->second == decltype(found->second)(frame_key(w, frame))) return true;
+  throw Error(fmt::format("{}: is of another animation, or of other options; remove it, or write elsewhere", path));
+}
+
+void show(Work& w, int frame, const char* what, const RenderState& state) {
+  const double now = wall_seconds();
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  if (w.arguments.quiet || now - w.shown < (terminal ? 0.25 : 10)) return;
+  w.shown = now;
+  std::string line =
+      fmt::format("frame {} ({} of {}) {}  {} {:.1f} spp  {} elapsed", frame, w.done + 1, w.to_do.size(),
+                  describe(w.shooting.timeline, frame), what, spp_of(state.film), clock_text(now - w.began));
+  if (w.done > 0)
+    line += fmt::format("  {} left", clock_text((now - w.began) / w.done * double(w.to_do.size() - size_t(w.done))));
+  std::fprintf(stderr, terminal ? "\r%s\033[K" : "%s\n", line.c_str());
+  std::fflush(stderr);
+}
+
+[[noreturn]] void interrupted(int frame) {
+  throw Error(fmt::format("interrupted in frame {}; the same command goes on from there", frame));
+}
+
+void write_frame(Work& w, int frame, const Stage& stage, Run& run, const RenderState& state) {
+  const double wall = wall_seconds(), cpu = process_cpu_seconds();
+  const Picture image = develop(state.film);
+  Metadata data = metadata(run, state);
+  data["ajar:frame"] = frame_key(w, frame);
+  write_png(frame_name(w.png, frame), image);
+  run.triangles = count_triangles(*stage.scene), run.accel_bytes = stage.accel->bytes();
+  run.write_seconds = wall_seconds() - wall, run.write_cpu = process_cpu_seconds() - cpu;
+  nlohmann::ordered_json record = summary(run, state);
+  record["frame"] = frame;
+  record["coherent"] = w.arguments.coherent;
+  write_text(fs::path(run.out_path).replace_extension(".json").string(), record.dump(2) + "\n");
+  write_exr(run.out_path, image, data, w.arguments.half);  // last: a frame is done when its image is there
+}
+
+// Renders one frame. taught: seconds that went into the fields, wall and CPU, which are part of the frame's time.
+void render_frame(Work& w, int frame, const Stage& stage, double taught, double taught_cpu) {
+  Run run;
+  run.scene_path = w.arguments.scene, run.out_path = frame_name(w.pattern, frame);
+  for (const auto& [name, value] : parameters_at(w.shooting.timeline, frame)) run.defines.push_back(name + "=" + value);
+  run.options = w.options;
+  run.options.seed = image_seed(w.sequence, w.options.seed, uint32_t(frame));
+  run.threads = w.options.threads > 0 ? w.options.threads : int(std::thread::hardware_concurrency());
+  run.load_seconds = stage.load_seconds, run.load_cpu = stage.load_cpu;
+  run.build_seconds = stage.build_seconds, run.build_cpu = stage.build_cpu;
+  RenderState state =
+      w.carried ? start_with(*stage.scene, run.options, w.carried->fields) : start_render(*stage.scene, run.options);
+  state.stats.seconds = state.stats.learn_seconds = taught;
+  state.stats.cpu_seconds = state.stats.learn_cpu_seconds = taught_cpu;
+  RenderOptions budget = run.options;  // the frame's time begins after loading: building counts
+  if (budget.seconds > 0) budget.seconds = std::max(budget.seconds - run.build_seconds, 1e-3);
+  if (budget.cpu_seconds > 0) budget.cpu_seconds = std::max(budget.cpu_seconds - run.build_cpu, 1e-3);
+  render(*stage.scene, *stage.accel, budget, state, [&](const RenderState& s) {
+    show(w, frame, "", s);
+    return !stop_asked();
+  });
+  if (stop_asked()) interrupted(frame);
+  if (state.film.passes == 0 && state.film.chunks == 0)
+    throw Error(
+        fmt::format("frame {}: its time is over before the first pass; give --time more, or --teach less", frame));
+  write_frame(w, frame, stage, run, state);
+  if (state.stats.rejected > 0)
+    fmt::print(stderr, "ajar: warning: frame {}: {} values were not finite or negative and were left out\n", frame,
+               state.stats.rejected);
+}
+
+std::string carried_name(const Work& w) {
+  const FrameRange& r = w.shooting.timeline.frames;
+  return fmt::format("{}/carried_{}-{}.fields", w.folder, r.first, r.last);
+}
+
+// The fields of a frame from those of the frame before.
+void teach_frame(Work& w, int frame, const Stage& stage) {
+  const Carried* before = w.sequence.coherence.fields && w.carried ? &*w.carried : nullptr;
+  std::optional<Fields> fields = teach(*stage.scene, *stage.accel, w.options, w.sequence, before, stage.moved,
+                                       uint32_t(frame), [&](const RenderState& s) {
+                                         show(w, frame, "learning", s);
+                                         return !stop_asked();
+                                       });
+  if (!fields) interrupted(frame);
+  w.carried = Carried{uint32_t(frame), std::move(*fields)};
+}
+
+// From the first frame whose fields are needed to the last that is missing.
+void render_frames(Work& w) {
+  const bool taught = is_guided(w.options.integrator) && (w.sequence.coherence.fields || w.sequence.coherence.numbers);
+  std::optional<Stage> before;
+  int frame = w.to_do.front();
+  if (w.carries) {
+    w.carried = find_carried(w.folder, w.key, frame - 1);
+    frame = w.carried ? int(w.carried->frame) + 1 : 0;
+    if (w.carried) before = Stage{load_frame(w.shooting, int(w.carried->frame)), {}, {}, {}};
+    if (frame < w.to_do.front() && !w.arguments.quiet)
+      fmt::print(stderr,
+                 "ajar: note: the fields of frames {} to {} are learned again: no frame before {} left any here\n",
+                 frame, w.to_do.front() - 1, w.to_do.front());
+  }
+  for (; frame <= w.to_do.back(); ++frame) {
+    const bool wanted = std::binary_search(w.to_do.begin(), w.to_do.end(), frame);
+    if (!wanted && !w.carries) continue;
+    Stage stage = set_up(w.shooting, frame, before ? &*before : nullptr);
+    const double wall = wall_seconds(), cpu = process_cpu_seconds();
+    if (taught) teach_frame(w, frame, stage);
+    if (wanted) {
+      render_frame(w, frame, stage, wall_seconds() - wall, process_cpu_seconds() - cpu);
+      if (w.carries) save_carried(carried_name(w), w.key, *w.carried);
+      ++w.done;
+      if (!w.arguments.quiet) fmt::print("{}\n", frame_name(w.pattern, frame)), std::fflush(stdout);
+    }
+    before = std::move(stage);
+  }
+}
+
+void write_figures(const Work& w) {
+  std::optional<FramePattern> reference;
+  if (!w.arguments.reference.empty()) reference = parse_pattern("--reference", w.arguments.reference);
+  const std::vector<FrameFigures> figures = measure(w.pattern, w.shooting.timeline, reference);
+  const std::string stem = w.folder + "/animation";
+  write_text(stem + ".json", sequence_json(figures));
+  write_text(stem + ".csv", sequence_csv(figures));
+  write_text(stem + ".svg", sequence_svg(figures, fmt::format("{}, {}", fs::path(w.arguments.scene).stem().string(),
+                                                              w.options.integrator)));
+  if (!w.arguments.quiet) fmt::print("{}.json\n{}.csv\n{}.svg\n", stem, stem, stem);
+}
+
+// Missing reference frames, before the work rather than after it.
+void check_reference(const Arguments& a, const FrameRange& frames) {
+  if (a.reference.empty()) return;
+  const FramePattern reference = parse_pattern("--reference", a.reference);
+  for (int f = frames.first; f <= frames.last; ++f)
+    if (!fs::exists(frame_name(reference, f)))
+      throw Error(fmt::format("--reference {}: there is no {}", a.reference, frame_name(reference, f)));
+}
+
+Work prepare(const Arguments& a) {
+  Work w{a, {a.scene, a.size, a.lenient, make_timeline(a.frames, a.defines, a.keyframes, a.at), {}}};
+  w.pattern = w.png = parse_pattern("-o", a.out);
+  w.png.after.replace(w.png.after.size() - 4, 4, ".png");
+  check_reference(a, w.shooting.timeline.frames);
+  if (!a.video.empty()) {
+    check_file(a.video);
+    require_ffmpeg();
+  }
+  const FrameRange& r = w.shooting.timeline.frames;
+  load_frame(w.shooting, 0);  // finds out what times there are, and that both ends can be loaded
+  const std::shared_ptr<const Scene> last = load_frame(w.shooting, r.last), scene = load_frame(w.shooting, r.first);
+  for (const std::string& n : scene->notes)
+    if (!a.quiet) fmt::print(stderr, "ajar: note: {}\n", n);
+  w.options = render_options(a, *scene);
+  w.sequence = a.sequence;
+  w.sequence.coherence = {a.coherent == "on" || a.coherent == "fields", a.coherent == "on" || a.coherent == "numbers"};
+  w.carries = w.sequence.coherence.fields && is_guided(w.options.integrator);
+  w.key = animation_key(w, *scene);
+  const fs::path folder = fs::path(frame_name(w.pattern, 0)).parent_path();
+  w.folder = folder.empty() ? "." : folder.string();
+  make_folder(w.folder);
+  for (int f = r.first; f <= r.last; ++f)
+    if (!is_done(w, f)) w.to_do.push_back(f);
+  return w;
+}
+
+void run_animate(const Arguments& a) {
+  Work w = prepare(a);
+  const FrameRange& r = w.shooting.timeline.frames;
+  const int there = r.last - r.first + 1 - int(w.to_do.size());
+  if (there > 0 && !a.quiet)
+    fmt::print(stderr, "ajar: note: {} of {} frames are there already\n", there, r.last - r.first + 1);
+  w.began = wall_seconds();
+  catch_stop();
+  if (!w.to_do.empty()) render_frames(w);
+  if (isatty(STDERR_FILENO) && !a.quiet) std::fputs("\r\033[K", stderr);
+  write_figures(w);
+  if (a.video.empty()) return;
+  make_video(w.png, r, a.fps, a.video);
+  if (!a.quiet) fmt::print("{}\n", a.video);
+}
+
+}  // namespace
+
+void add_animate(CLI::App& app) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* c = app.add_subcommand("animate", "Render the frames of an animation (docs/animation.md)");
+  c->add_option("scene", a->scene, "Mitsuba XML scene")->required();
+  c->add_option("-o,--out", a->out, "frames to write: DIR/frame_%04d.exr; a PNG and a JSON record go beside each")
+      ->required();
+  c->add_option("--frames", a->frames, "48 for all of 48 frames; 10-20/48 for some of them, counted from 0");
+  c->add_option("-D", a->defines, "name=FROM..TO: a parameter that moves; :smooth eases it; name=value: one that stays")
+      ->allow_extra_args(false);
+  c->add_option("--keyframes", a->keyframes, "JSON file of parameters over frames");
+  c->add_option("--at", a->at, "FROM..TO: time of the scene's <animation>s at the first and last frame (default: all)");
+  c->add_option("--integrator", a->integrator, "as for ajar render (default: the scene's, else guided-bdpt)");
+  c->add_option("--spp", a->spp, "samples per pixel of each frame")->check(CLI::Range(1, 1 << 30));
+  c->add_option("--time", a->time, "wall time for each frame: 5s, 1m");
+  c->add_option("--cpu-time", a->cpu_time, "CPU time of all threads for each frame");
+  c->add_option("--seed", a->seed, "another seed, other noise");
+  c->add_option("--threads", a->threads, "threads (default: all)")->check(CLI::Range(1, 4096));
+  c->add_option("--size", a->size, "WIDTHxHEIGHT instead of the scene's");
+  c->add_option("--max-depth", a->max_depth, "edges of the longest path; 1 sees lights alone, -1 is unlimited");
+  c->add_option("--coherent", a->coherent,
+                "what frames have in common: on (learned fields and random numbers), fields, numbers or off")
+      ->check(CLI::IsMember(std::vector<std::string>(std::begin(coherences), std::end(coherences))));
+  c->add_option("--forget", a->sequence.forget, "share of the fields' evidence that lives on to the next frame")
+      ->check(CLI::Range(0.0, 0.999));
+  c->add_option("--teach", a->sequence.teach, "passes that teach the fields of a frame before it is rendered")
+      ->check(CLI::Range(1, 4096));
+  c->add_option("--guide", a->guide, "which subpaths the learned fields guide: both, camera or light")
+      ->check(CLI::IsMember({"both", "camera", "light"}));
+  c->add_option("--field-memory", a->field_memory, "memory that learned fields may take: 512K, 8M (default), 1G");
+  c->add_option("--reference", a->reference, "frames to measure error and flicker against: DIR/ref_%04d.exr");
+  c->add_option("--video", a->video, "film to make of the frames with ffmpeg: OUT.mp4");
+  c->add_option("--fps", a->fps, "of the film (24)")->check(CLI::Range(1.0, 240.0));
+  c->add_flag("--half", a->half, "16-bit floats in the EXR");
+  c->add_flag("--lenient", a->lenient, "leave out what the loader does not know, with a note");
+  c->add_flag("-q,--quiet", a->quiet, "no progress, no notes");
+  c->callback([a] { run_animate(*a); });
+}
+
+}  // namespace ajar

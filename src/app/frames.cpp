@@ -1,0 +1,160 @@
+#include "frames.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "ajar/core/error.h"
+#include "ajar/report/metrics.h"
+#include "arguments.h"
+
+namespace ajar {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Follows wall and CPU time.
+struct Clock {
+  double wall = wall_seconds(), cpu = process_cpu_seconds();
+  void lap(double& seconds, double& cpu_seconds) {
+    const double w = wall_seconds(), c = process_cpu_seconds();
+    seconds = w - wall, cpu_seconds = c - cpu;
+    wall = w, cpu = c;
+  }
+};
+
+double number_or(const Metadata& metadata, const std::string& name, double otherwise) {
+  const auto found = metadata.find(name);
+  if (found == metadata.end() || !std::holds_alternative<double>(found->second)) return otherwise;
+  return std::get<double>(found->second);
+}
+
+Picture read_rgb(const std::string& path) { return select(read_picture(path), {"R", "G", "B"}); }
+
+FrameFigures measure_frame(const std::string& path, const Picture& image, const Timeline& timeline, int frame) {
+  FrameFigures f;
+  f.frame = frame;
+  f.parameters = parameters_at(timeline, frame);
+  if (const auto time = time_at(timeline, frame)) f.parameters["time"] = fmt::format("{:.9g}", *time);
+  const Metadata metadata = read_metadata(path);
+  f.seconds = number_or(metadata, "ajar:seconds", NAN);
+  f.cpu_seconds = number_or(metadata, "ajar:cpu_seconds", NAN);
+  f.spp = number_or(metadata, "ajar:spp", NAN);
+  double sum = 0;
+  for (const float x : image.pixels) sum += x;
+  f.mean = sum / double(image.pixels.size());
+  return f;
+}
+
+}  // namespace
+
+FramePattern parse_pattern(const std::string& option, const std::string& text) {
+  const auto wrong = [&](const std::string& why) {
+    return Error(fmt::format("{} {}: {}; write DIR/frame_%04d.exr", option, text, why));
+  };
+  const size_t percent = text.find('%');
+  if (percent == text.npos) throw wrong("needs a place for the number of the frame");
+  const size_t d = text.find_first_not_of("0123456789", percent + 1);
+  if (d == text.npos || text[d] != 'd' || text.find('%', d) != text.npos || d - percent > 3)
+    throw wrong("the number of the frame stands as %d or %04d, once");
+  FramePattern p{text.substr(0, percent), text.substr(d + 1), 0};
+  if (d > percent + 1) p.digits = std::stoi(text.substr(percent + 1, d - percent - 1));
+  if (!p.after.ends_with(".exr")) throw wrong("frames are EXR files");
+  if (p.after.find('/') != p.after.npos) throw wrong("all frames lie in one folder");
+  return p;
+}
+
+std::string frame_name(const FramePattern& p, int frame) {
+  return fmt::format("{}{:0{}}{}", p.before, frame, p.digits, p.after);
+}
+
+std::optional<double> time_at(const Timeline& t, int frame) {
+  if (!t.has_time) return {};
+  if (t.frames.count == 1) return t.first_time;
+  return t.first_time + (t.last_time - t.first_time) * frame / (t.frames.count - 1);
+}
+
+std::string describe(const Timeline& timeline, int frame) {
+  std::string out;
+  const std::map<std::string, std::string> all = parameters_at(timeline, frame);
+  for (const auto& [name, track] : timeline.tracks)
+    out += fmt::format("{}{}={}", out.empty() ? "" : " ", name, all.at(name));
+  if (const auto time = time_at(timeline, frame)) out += fmt::format("{}time={:.4g}", out.empty() ? "" : " ", *time);
+  return out;
+}
+
+std::shared_ptr<const Scene> load_frame(Shooting& s, int frame) {
+  LoadOptions options;
+  options.defines = parameters_at(s.timeline, frame);
+  options.lenient = s.lenient;
+  options.time = time_at(s.timeline, frame);
+  options.cache = &s.cache;
+  auto scene = std::make_shared<Scene>(load_scene(s.scene_path, options));
+  if (!s.timeline.has_time && scene->hints.first_time < scene->hints.last_time) {
+    // The user said nothing: the whole of what the file tells.
+    s.timeline.has_time = true;
+    s.timeline.first_time = scene->hints.first_time, s.timeline.last_time = scene->hints.last_time;
+    return load_frame(s, frame);
+  }
+  if (!s.size.empty()) set_size(scene->camera, s.size);
+  return scene;
+}
+
+Stage set_up(Shooting& s, int frame, const Stage* before) {
+  Stage stage;
+  Clock clock;
+  stage.scene = load_frame(s, frame);
+  if (before) stage.moved = find_motion(*before->scene, *stage.scene);
+  clock.lap(stage.load_seconds, stage.load_cpu);
+  if (before && before->accel && stage.moved.empty()) {
+    stage.accel = before->accel, stage.built_for = before->built_for;
+  } else {
+    stage.accel = std::make_shared<Accel>(*stage.scene), stage.built_for = stage.scene;
+  }
+  clock.lap(stage.build_seconds, stage.build_cpu);
+  return stage;
+}
+
+std::optional<Carried> find_carried(const std::string& folder, const std::string& key, int last) {
+  std::optional<Carried> best;
+  std::error_code none_such;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, none_such)) {
+    if (entry.path().extension() != ".fields") continue;
+    try {
+      Carried c = load_carried(entry.path().string(), key);
+      if (int(c.frame) <= last && (!best || c.frame > best->frame)) best = std::move(c);
+    } catch (const Error&) {
+      // of another animation, or damaged: what it holds is learned again
+    }
+  }
+  return best;
+}
+
+std::vector<FrameFigures> measure(const FramePattern& pattern, const Timeline& timeline,
+                                  const std::optional<FramePattern>& reference) {
+  std::vector<FrameFigures> out;
+  Picture before, reference_before;
+  for (int f = 0; f < timeline.frames.count; ++f) {
+    const std::string path = frame_name(pattern, f);
+    if (!fs::exists(path)) {
+      before = {};
+      continue;
+    }
+    Picture image = read_rgb(path), truth;
+    out.push_back(measure_frame(path, image, timeline, f));
+    if (!reference) continue;
+    const std::string name = frame_name(*reference, f);
+    truth = read_rgb(name);
+    if (truth.width != image.width || truth.height != image.height)
+      throw Error(fmt::format("--reference {}: is {}x{}, the frame {}x{}; use --size", name, truth.width, truth.height,
+                              image.width, image.height));
+    const Metrics m = compare(image, truth, false);
+    out.back().relmse = m.relmse, out.back().relmse_trimmed = m.relmse_trimmed;
+    if (before.width > 0) out.back().flicker = flicker(before, image, reference_before, truth);
+    before = std::move(image), reference_before = std::move(truth);
+  }
+  return out;
+}
+
+}  // namespace ajar

@@ -1,0 +1,82 @@
+#include "ajar/render/sequence.h"
+
+#include <fmt/format.h>
+
+#include "ajar/core/bytes.h"
+#include "ajar/core/error.h"
+
+namespace ajar {
+namespace {
+
+constexpr FileKind carried_kind = {"AJARan01", "carried field file", "an animation leaves one beside its frames",
+                                   "remove it: the fields are learned again from the first frame on"};
+
+// So many lessons of so many passes each.
+bool give_lessons(const Scene& scene, const Accel& accel, RenderOptions options, uint32_t lessons, uint32_t passes,
+                  RenderState& state, const Monitor& monitor) {
+  Learning& l = state.learning;
+  l.lesson = passes;
+  l.train = l.fields.generation + lessons;
+  options.spp = 0, options.seconds = 0, options.cpu_seconds = 0, options.noise = 0, options.techniques = false;
+  render(scene, accel, options, state, monitor);
+  return l.fields.generation >= l.train;
+}
+
+}  // namespace
+
+uint64_t image_seed(const SequenceOptions& sequence, uint64_t seed, uint32_t frame) {
+  return sequence.coherence.numbers ? seed : hash(hash(seed, 0xf4a3e), frame);
+}
+
+uint64_t teaching_seed(uint64_t seed, uint32_t frame) { return hash(hash(seed, 0x7eac4), frame); }
+
+std::optional<Fields> teach(const Scene& scene, const Accel& accel, const RenderOptions& options,
+                            const SequenceOptions& sequence, const Carried* before, const std::vector<Box>& moved,
+                            uint32_t frame, const Monitor& monitor) {
+  RenderOptions teaching = options;
+  teaching.seed = teaching_seed(options.seed, frame);
+  RenderState state = start_render(scene, teaching);
+  if (before) {
+    const LearnOptions learning = learn_options(teaching);
+    go_on_from({doubt(before->fields, moved, sequence.doubt, learning), {}, 0}, learning, state.learning, state.film);
+    teaching.learn.forget = sequence.forget;
+    if (!give_lessons(scene, accel, teaching, 1, sequence.teach, state, monitor)) return {};
+    return std::move(state.learning.fields);
+  }
+  const uint32_t last = sequence.begin - young_generations;
+  if (!give_lessons(scene, accel, teaching, young_generations, 1, state, monitor)) return {};
+  if (!give_lessons(scene, accel, teaching, 1, last, state, monitor)) return {};
+  return std::move(state.learning.fields);
+}
+
+RenderState start_with(const Scene& scene, const RenderOptions& options, Fields fields) {
+  RenderState state = start_render(scene, options);
+  state.learning.fields = std::move(fields);
+  state.learning.training = start_training(state.learning.fields);
+  state.learning.train = state.learning.fields.generation;
+  return state;
+}
+
+void save_carried(const std::string& path, const std::string& key, const Carried& carried) {
+  write_file(path, carried_kind, [&](Writer& w) {
+    w.text(key);
+    w.value(carried.frame);
+    write(w, carried.fields);
+  });
+}
+
+Carried load_carried(const std::string& path, const std::string& key) {
+  Reader r(path, carried_kind);
+  std::string stored;
+  Carried carried;
+  r.text(stored);
+  if (stored != key)
+    throw Error(fmt::format("{}: fields of another animation ({}); this one is {}; remove the file, or write elsewhere",
+                            path, stored, key));
+  r.value(carried.frame);
+  read(r, carried.fields);
+  r.finish();
+  return carried;
+}
+
+}  // namespace ajar

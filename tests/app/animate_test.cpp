@@ -1,0 +1,310 @@
+// ajar animate, as a user calls it: which frames it makes, that they do not depend on how the work was split, and what
+// it says where it cannot.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "ajar/core/error.h"
+#include "ajar/film/picture.h"
+#include "app/commands.h"
+#include "app/timeline.h"
+
+namespace ajar {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Numbers = std::vector<double>;
+
+std::string error_of(const std::function<void()>& f) {
+  try {
+    f();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+#define EXPECT_SAYS(text, words) EXPECT_NE((text).find(words), std::string::npos) << "it says: \"" << (text) << '"'
+
+TEST(Timeline, SweepsGoFromEndToEnd) {
+  const Timeline t = make_timeline("5", {"door=10..50", "sun=0 4..1 0..2 4", "tint=red", "there=0..1..0"}, "", "");
+  EXPECT_EQ(t.frames.first, 0);
+  EXPECT_EQ(t.frames.last, 4);
+  EXPECT_EQ(values_at(t.tracks.at("door"), 0), Numbers({10}));
+  EXPECT_EQ(values_at(t.tracks.at("door"), 1), Numbers({20}));
+  EXPECT_EQ(values_at(t.tracks.at("door"), 4), Numbers({50}));
+  EXPECT_EQ(values_at(t.tracks.at("sun"), 1), Numbers({0.5, 2}));
+  EXPECT_EQ(values_at(t.tracks.at("there"), 2), Numbers({1}));
+  const auto parameters = parameters_at(t, 3);
+  EXPECT_EQ(parameters.at("door"), "40");
+  EXPECT_EQ(parameters.at("sun"), "1.5, 2");
+  EXPECT_EQ(parameters.at("tint"), "red");
+}
+
+TEST(Timeline, SmoothOnesEaseInAndOut) {
+  const Track t = make_timeline("9", {"x=0..8:smooth"}, "", "").tracks.at("x");
+  EXPECT_EQ(values_at(t, 0), Numbers({0}));
+  EXPECT_NEAR(values_at(t, 2)[0], 8 * (3 * 0.0625 - 2 * 0.015625), 1e-12);
+  EXPECT_NEAR(values_at(t, 4)[0], 4, 1e-12);
+  // Three keys: nothing overshoots, and where it does not turn it does not stop.
+  const Track rising{{{0, {0}}, {4, {1}}, {8, {8}}}, true};
+  double before = 0;
+  for (double f = 0; f <= 8; f += 0.25) {
+    const double x = values_at(rising, f)[0];
+    EXPECT_GE(x, before - 1e-12) << f;
+    EXPECT_LE(x, 8);
+    before = x;
+  }
+  EXPECT_GT(values_at(rising, 4.1)[0] - values_at(rising, 3.9)[0], 0.05);
+}
+
+TEST(Timeline, RangesArePartsOfTheWhole) {
+  const Timeline part = make_timeline("10-20/48", {"x=0..47"}, "", "");
+  EXPECT_EQ(part.frames.first, 10);
+  EXPECT_EQ(part.frames.last, 20);
+  EXPECT_EQ(parameters_at(part, 13).at("x"), "13");
+  const Timeline one = make_timeline("7/48", {}, "", "");
+  EXPECT_EQ(one.frames.first, 7);
+  EXPECT_EQ(one.frames.last, 7);
+  EXPECT_EQ(parameters_at(make_timeline("1", {"x=3..9"}, "", ""), 0).at("x"), "3");
+}
+
+TEST(Timeline, ValuesWithDotsAreNotAllSweeps) {
+  EXPECT_EQ(make_timeline("4", {"folder=../models"}, "", "").constant.at("folder"), "../models");
+}
+
+TEST(Timeline, WrongOnesAreErrors) {
+  const auto frames = [](const std::string& text) { return error_of([&] { make_timeline(text, {}, "", ""); }); };
+  EXPECT_SAYS(frames(""), "--frames is missing");
+  EXPECT_SAYS(frames("0"), "from 1 to");
+  EXPECT_SAYS(frames("-3"), "not a range");
+  EXPECT_SAYS(frames("many"), "not a range");
+  EXPECT_SAYS(frames("10-20"), "10-20/48");
+  EXPECT_SAYS(frames("20-10/48"), "after the last");
+  EXPECT_SAYS(frames("10-48/48"), "numbered from 0 to 47");
+  EXPECT_SAYS(frames("3/48x"), "not a range");
+  const auto sweep = [](const std::string& text) { return error_of([&] { make_timeline("4", {text}, "", ""); }); };
+  EXPECT_SAYS(sweep("door"), "name=FROM..TO");
+  EXPECT_SAYS(sweep("door=5..wide"), "from number to number");
+  EXPECT_SAYS(sweep("door=5..60:quick"), "neither linear nor smooth");
+  EXPECT_SAYS(sweep("sun=1 2..3"), "the same number of numbers");
+  EXPECT_SAYS(error_of([] { make_timeline("4", {"x=1..2", "x=3"}, "", ""); }), "given twice");
+  EXPECT_SAYS(error_of([] { make_timeline("4", {}, "", "soon"); }), "--at soon");
+}
+
+struct Animate : testing::Test {
+  fs::path folder;
+
+  void SetUp() override {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder = fs::path(testing::TempDir()) / ("ajar animate " + std::string(info->name()) + std::to_string(::getpid()));
+    fs::create_directories(folder);
+    write("room.xml", R"(<scene version="3.0.0">
+      <default name="door" value="1"/>
+      <sensor type="perspective"><float name="fov" value="60"/>
+        <transform name="to_world"><lookat origin="0, 0, 3.5" target="0, 0, 0" up="0, 1, 0"/></transform>
+        <film type="hdrfilm"><integer name="width" value="16"/><integer name="height" value="12"/>
+          <rfilter type="box"/></film></sensor>
+      <shape type="cube"><transform name="to_world"><scale value="-4"/></transform></shape>
+      <shape type="rectangle"><transform name="to_world"><scale value="0.6"/><translate x="$door"/></transform></shape>
+      <shape type="sphere"><point name="center" x="-1.5" y="1.5" z="1"/><float name="radius" value="0.3"/>
+        <emitter type="area"><rgb name="radiance" value="20, 18, 15"/></emitter></shape>
+    </scene>)");
+  }
+  void TearDown() override { fs::remove_all(folder); }
+
+  void write(const std::string& name, const std::string& text) const { std::ofstream(folder / name) << text; }
+  std::string in(const std::string& name) const { return (folder / name).string(); }
+
+  void run(const std::string& frames, const std::string& out, std::vector<std::string> more = {}) const {
+    CLI::App app;
+    add_animate(app);
+    std::vector<std::string> arguments = {
+        "animate", in("room.xml"),          "-q", "--teach",       "1",         "--frames", frames,
+        "-o",      in(out) + "/f_%02d.exr", "-D", "door=0.2..1.4", "--threads", "1"};
+    const auto otherwise = [&](const char* option, const char* value) {
+      if (std::find(more.begin(), more.end(), option) == more.end()) more.insert(more.end(), {option, value});
+    };
+    otherwise("--spp", "2"), otherwise("--integrator", "guided-bdpt");
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    std::reverse(arguments.begin(), arguments.end());
+    app.parse(arguments);
+  }
+  std::vector<float> pixels(const std::string& name) const { return read_picture(in(name)).pixels; }
+  nlohmann::json figures(const std::string& out) const {
+    std::ifstream file(in(out) + "/animation.json");
+    return nlohmann::json::parse(file);
+  }
+};
+
+TEST_F(Animate, FramesDoNotDependOnHowTheWorkIsSplit) {
+  run("4", "whole");
+  run("0-1/4", "parts");
+  run("2-3/4", "parts");  // goes on from what the first part left
+  run("3/4", "alone");    // learns all that comes before again
+  for (const char* f : {"/f_00.exr", "/f_01.exr", "/f_02.exr", "/f_03.exr"})
+    EXPECT_EQ(pixels(std::string("whole") + f), pixels(std::string("parts") + f)) << f;
+  EXPECT_EQ(pixels("whole/f_03.exr"), pixels("alone/f_03.exr"));
+  EXPECT_NE(pixels("whole/f_02.exr"), pixels("whole/f_03.exr"));
+  EXPECT_TRUE(fs::exists(in("whole/f_03.png")));
+  EXPECT_TRUE(fs::exists(in("whole/f_03.json")));
+  EXPECT_EQ(figures("whole")["frames"].size(), 4u);
+  EXPECT_EQ(figures("whole")["frames"][3]["parameters"]["door"], "1.4");
+}
+
+TEST_F(Animate, FinishedFramesAreNotRenderedAgain) {
+  run("3", "out");
+  const std::vector<float> last = pixels("out/f_02.exr");
+  const auto kept = fs::last_write_time(in("out/f_01.exr"));
+  fs::remove(in("out/f_02.exr"));
+  run("3", "out");
+  EXPECT_EQ(fs::last_write_time(in("out/f_01.exr")), kept);
+  EXPECT_EQ(pixels("out/f_02.exr"), last);
+  EXPECT_SAYS(error_of([&] { run("3", "out", {"--seed", "7"}); }), "other options; remove it");
+  EXPECT_SAYS(error_of([&] { run("4", "out"); }), "of another animation");
+}
+
+TEST_F(Animate, ADamagedFileOfFieldsIsLearnedAgain) {
+  run("3", "out");
+  const std::vector<float> last = pixels("out/f_02.exr");
+  fs::remove(in("out/f_02.exr"));
+  for (const auto& entry : fs::directory_iterator(in("out")))
+    if (entry.path().extension() == ".fields") std::ofstream(entry.path()) << "rubbish";
+  run("3", "out");
+  EXPECT_EQ(pixels("out/f_02.exr"), last);
+}
+
+// Numbers in common: what does not move looks the same in every frame. Else it does not.
+TEST_F(Animate, CoherenceIsOfNumbersAndFields) {
+  const auto same = [&](const std::string& coherent, const std::string& integrator) {
+    const std::string out = coherent + integrator;
+    CLI::App app;
+    add_animate(app);
+    std::vector<std::string> arguments = {
+        "animate",    in("room.xml"), "-q",           "--spp",    "2",  "--frames",           "2",
+        "--coherent", coherent,       "--integrator", integrator, "-o", in(out) + "/f_%d.exr"};
+    std::reverse(arguments.begin(), arguments.end());
+    app.parse(arguments);
+    return pixels(out + "/f_0.exr") == pixels(out + "/f_1.exr");
+  };
+  EXPECT_TRUE(same("on", "path"));
+  EXPECT_TRUE(same("numbers", "path"));
+  EXPECT_FALSE(same("off", "path"));
+  EXPECT_FALSE(same("fields", "path"));
+  EXPECT_FALSE(same("on", "guided-bdpt"));  // fields that have learned more
+}
+
+TEST_F(Animate, MeasuresErrorAndFlicker) {
+  run("3", "reference", {"--integrator", "path", "--spp", "64"});
+  run("3", "out", {"--integrator", "path", "--reference", in("reference/f_%02d.exr")});
+  const auto j = figures("out");
+  EXPECT_GT(j["mean"]["relmse"].get<double>(), 0);
+  EXPECT_GT(j["mean"]["flicker"].get<double>(), 0);
+  EXPECT_TRUE(j["frames"][0]["flicker"].is_null());
+  EXPECT_FALSE(j["frames"][1]["flicker"].is_null());
+  run("3", "reference", {"--integrator", "path", "--spp", "64", "--reference", in("reference/f_%02d.exr")});
+  EXPECT_EQ(figures("reference")["mean"]["flicker"], 0);
+  EXPECT_TRUE(fs::exists(in("out/animation.csv")));
+  EXPECT_TRUE(fs::exists(in("out/animation.svg")));
+  EXPECT_SAYS(error_of([&] { run("4", "more", {"--reference", in("reference/f_%02d.exr")}); }), "there is no");
+}
+
+TEST_F(Animate, KeyframesComeFromAFile) {
+  write("keys.json", R"({"frames": 3, "parameters": {"door": {"smooth": true, "keys": [[0, 0.5], [2, 1.5]]}}})");
+  CLI::App app;
+  add_animate(app);
+  std::vector<std::string> arguments = {"animate",       in("room.xml"), "-q",   "--spp",    "1",   "--keyframes",
+                                        in("keys.json"), "--integrator", "path", "--frames", "1-2", "-o",
+                                        in("k_%d.exr")};
+  std::reverse(arguments.begin(), arguments.end());
+  app.parse(arguments);
+  EXPECT_FALSE(fs::exists(in("k_0.exr")));
+  EXPECT_TRUE(fs::exists(in("k_2.exr")));
+  const auto wrong = [&](const std::string& text) {
+    write("keys.json", text);
+    return error_of([&] { make_timeline("", {}, in("keys.json"), ""); });
+  };
+  EXPECT_SAYS(wrong("{"), "not JSON");
+  EXPECT_SAYS(wrong("[]"), "write {\"frames\"");
+  EXPECT_SAYS(wrong(R"({"frames": 0})"), "from 1 to");
+  EXPECT_SAYS(wrong(R"({"frame": 3})"), "\"frame\" is unknown");
+  EXPECT_SAYS(wrong(R"({"frames": 3, "parameters": {"x": []}})"), "parameter \"x\": needs a list of keys");
+  EXPECT_SAYS(wrong(R"({"frames": 3, "parameters": {"x": [[0, "a"]]}})"), "a key is [FRAME, VALUE]");
+  EXPECT_SAYS(wrong(R"({"frames": 3, "parameters": {"x": [[2, 1], [1, 1]]}})"), "in the order");
+  EXPECT_SAYS(error_of([&] { make_timeline("", {}, in("none.json"), ""); }), "cannot be read");
+}
+
+// The scene's own animation: the whole of it, unless the user wants a part.
+TEST_F(Animate, ScenesMoveByThemselves) {
+  write("room.xml", R"(<scene version="3.0.0">
+    <sensor type="perspective">
+      <animation name="to_world">
+        <transform time="1"><lookat origin="0, 0, 4" target="0, 0, 0" up="0, 1, 0"/></transform>
+        <transform time="3"><lookat origin="2, 0, 4" target="2, 0, 0" up="0, 1, 0"/></transform></animation>
+      <film type="hdrfilm"><integer name="width" value="8"/><integer name="height" value="8"/></film></sensor>
+    <shape type="sphere"><emitter type="area"/></shape></scene>)");
+  const auto animate = [&](const std::string& out, std::vector<std::string> more) {
+    CLI::App app;
+    add_animate(app);
+    std::vector<std::string> arguments = {"animate", in("room.xml"),      "-q",           "--spp", "4", "--frames", "3",
+                                          "-o",      in(out) + "_%d.exr", "--integrator", "path"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    std::reverse(arguments.begin(), arguments.end());
+    app.parse(arguments);
+  };
+  animate("all", {});
+  fs::create_directories(in("part"));
+  animate("part/p", {"--at", "2..3"});
+  EXPECT_NE(pixels("all_0.exr"), pixels("all_1.exr"));
+  EXPECT_EQ(pixels("all_1.exr"), pixels("part/p_0.exr"));
+  EXPECT_EQ(pixels("all_2.exr"), pixels("part/p_2.exr"));
+}
+
+TEST_F(Animate, SaysWhatIsWrong) {
+  const auto wrong = [&](std::vector<std::string> more) { return error_of([&] { run("2", "out", std::move(more)); }); };
+  EXPECT_SAYS(wrong({"-D", "window=1..2"}), "-D window: the scene has no parameter of this name");
+  EXPECT_SAYS(wrong({"--integrator", "pathh"}), "--integrator pathh: unknown");
+  EXPECT_SAYS(wrong({"--integrator", "path", "--guide", "light"}), "learns no fields");
+  EXPECT_SAYS(wrong({"--time", "soon"}), "--time soon");
+  const auto pattern = [&](const std::string& out) {
+    return error_of([&] {
+      CLI::App app;
+      add_animate(app);
+      std::vector<std::string> arguments = {out, "-o", "2", "--frames", in("room.xml"), "animate"};
+      app.parse(arguments);
+    });
+  };
+  EXPECT_SAYS(pattern(in("frame.exr")), "needs a place for the number");
+  EXPECT_SAYS(pattern(in("f_%d_%d.exr")), "once");
+  EXPECT_SAYS(pattern(in("f_%s.exr")), "%d or %04d");
+  EXPECT_SAYS(pattern(in("f_%d.png")), "EXR");
+  EXPECT_SAYS(pattern(in("f_%d/x.exr")), "one folder");
+  EXPECT_TRUE(!fs::exists(in("out")) || fs::is_empty(in("out")));
+}
+
+// A stand-in for ffmpeg, which writes down what it was asked for.
+TEST_F(Animate, VideosAreMadeByFfmpeg) {
+  const std::string path = std::getenv("PATH");
+  ::setenv("PATH", folder.c_str(), 1);
+  EXPECT_SAYS(error_of([&] { run("2", "out", {"--video", in("film.mp4")}); }), "ffmpeg is not installed");
+  EXPECT_FALSE(fs::exists(in("out/f_00.exr")));  // told before the work, not after it
+  write("ffmpeg", "#!/bin/sh\nfor last; do :; done\necho \"$@\" > \"$last\"\n");
+  fs::permissions(in("ffmpeg"), fs::perms::owner_all);
+  run("1-2/3", "out", {"--video", in("film.mp4"), "--fps", "12"});
+  std::ifstream film(in("film.mp4"));
+  const std::string said{std::istreambuf_iterator<char>(film), {}};
+  EXPECT_SAYS(said, "-framerate 12 -start_number 1 -i " + in("out/f_%02d.png") + " -frames:v 2");
+  write("ffmpeg", "#!/bin/sh\nexit 1\n");
+  fs::remove(in("film.mp4"));
+  EXPECT_SAYS(error_of([&] { run("1-2/3", "out", {"--video", in("film.mp4")}); }), "ffmpeg failed");
+  EXPECT_FALSE(fs::exists(in("film.mp4")));
+  ::setenv("PATH", path.c_str(), 1);
+}
+
+}  // namespace
+}  // namespace ajar
