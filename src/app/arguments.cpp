@@ -66,18 +66,4 @@ void check_file(const std::string& path) {
   if (std::filesystem::is_directory(path)) throw Error(fmt::format("{}: is a folder; name a file in it", path));
 }
 
-double parse_duration(const std::string& option, const std::string& text) {
-  size_t used = 0;
-  double value = -1;
-  try {
-    value = std::stod(text, &used);
-  } catch (const std::exception&) {
-  }
-  const std::string unit = value >= 0 ? text.substr(used) : "";
-  const double factor = unit.empty() || unit == "s" ? 1 : unit == "m" || unit == "min" ? 60 : unit == "h" ? 3600 : 0;
-  if (!(value > 0) || factor == 0 || !std::isfinite(value))
-    throw Error(fmt::format("{} {}: not a time; write 90s, 5m or 1h", option, text));
-  return value * factor;
-}
-
 }  // namespace ajar

@@ -81,12 +81,12 @@ double mean_of(const Film& film) {
   return sum / double(film.pixels()) / std::max(film.passes, 1u);
 }
 
-// Without the worst pixels, so that a firefly more or less does not decide; but as far as these hold most of the light
-// that was seen at all, they are what the error is about.
+// Without the worst pixels, so that a firefly more or less does not decide; but as far as these hold the light that was
+// seen, they are what the error is about: a caustic that is all fireflies must not look like little noise.
 double error_of_pass(const Film& film) {
   const ErrorEstimate e = estimate_error(film);
   if (!(e.relmse < infinity)) return infinity;
-  return std::lerp(e.relmse_trimmed, e.relmse, std::max(2 * e.trimmed_light - 1, 0.0)) * film.passes;
+  return std::lerp(e.relmse_trimmed, e.relmse, e.trimmed_light) * film.passes;
 }
 
 // Errors are relative to the image as it would be looked at: exposed to a mean of a fifth, by whoever saw most.
