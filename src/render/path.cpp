@@ -9,22 +9,22 @@ namespace {
 float hit_weight(Heuristic h, double own, double other) { return float(1 / (1 + raise(h, ratio(other, own)))); }
 
 // Light that the path ran into: s = 0.
-Rgb hit_light(const Scene& scene, Heuristic h, const Surface& at, const Vec3& from, const Vec3& d, double pdf,
-              bool alone) {
+Rgb hit_light(const Scene& scene, Heuristic h, const Guide& before, const Surface& at, const Vec3& from, const Vec3& d,
+              double pdf, bool alone) {
   const LightPoint point = light_point(scene, at);
   if (point.light == none) return Rgb(0);
   const Rgb radiance = emitted(scene, at, -d);
   if (alone || is_black(radiance)) return radiance;
-  return radiance * hit_weight(h, pdf, double(scene.light_choice.pdf(point.light)) * pdf_direct(scene, point, from, d));
+  return radiance * hit_weight(h, pdf, pdf_next_event(scene, before, from, point, d));
 }
 
-Rgb hit_sky(const Scene& scene, Heuristic h, const Vec3& from, const Vec3& d, double pdf, bool alone) {
+Rgb hit_sky(const Scene& scene, Heuristic h, const Guide& before, const Vec3& from, const Vec3& d, double pdf,
+            bool alone) {
   Rgb sum(0);
   for (const uint32_t light : scene.infinite_lights) {
     const Rgb radiance = environment(scene, light, d);
     if (is_black(radiance)) continue;
-    const double other =
-        alone ? 0 : double(scene.light_choice.pdf(light)) * pdf_direct(scene, light_point(scene, light, d), from, d);
+    const double other = alone ? 0 : pdf_next_event(scene, before, from, light_point(scene, light, d), d);
     sum += radiance * hit_weight(h, pdf, other);
   }
   return sum;
@@ -32,9 +32,8 @@ Rgb hit_sky(const Scene& scene, Heuristic h, const Vec3& from, const Vec3& d, do
 
 // Next-event estimation: s = 1, at the last of t vertices.
 Rgb direct(const Job& job, const Guide& guide, const Surface& at, Sampler& sampler, int t, Scratch& scratch) {
-  float pick;
   DirectSample d;
-  if (!choose_light_point(*job.scene, guide, at.p, sampler, pick, d)) return Rgb(0);
+  if (!choose_light_point(*job.scene, guide, at.p, sampler, d)) return Rgb(0);
   const GuideEval e = evaluate(guide, d.wi, Mode::radiance);
   if (is_black(e.f_cos)) return Rgb(0);
   ++scratch.counters.shadow_rays;
@@ -42,8 +41,8 @@ Rgb direct(const Job& job, const Guide& guide, const Surface& at, Sampler& sampl
   if (!visible(*job.accel, segment_to(d, at.p, at.ng, at.error))) return Rgb(0);
   const LightPoint& l = d.point;
   const bool alone = l.delta_position || l.delta_direction;
-  const float w = alone ? 1 : hit_weight(job.walk.heuristic, double(pick) * d.pdf, e.pdf);
-  return e.f_cos * d.radiance * (w / (pick * d.pdf));
+  const float w = alone ? 1 : hit_weight(job.walk.heuristic, d.pdf, e.pdf);
+  return e.f_cos * d.radiance * (w / d.pdf);
 }
 
 // The ray that a path sends next, with what its end needs to know about it.
@@ -95,12 +94,12 @@ void trace_path(const Job& job, Sample& sample, Scratch& scratch) {
     charge(scratch, scratch.ledger->camera_ticks);
     if (!hits) {
       if (!scene.infinite_lights.empty())
-        add(sample, scratch, 0, t, f.beta * hit_sky(scene, h, f.from, f.d, f.pdf, f.alone));
+        add(sample, scratch, 0, t, f.beta * hit_sky(scene, h, guide, f.from, f.d, f.pdf, f.alone));
       return;
     }
     const Surface at = make_surface(scene, hit, f.o, f.d);
     if (scene.shapes[hit.shape].light != none)
-      add(sample, scratch, 0, t, f.beta * hit_light(scene, h, at, f.from, f.d, f.pdf, f.alone));
+      add(sample, scratch, 0, t, f.beta * hit_light(scene, h, guide, at, f.from, f.d, f.pdf, f.alone));
     if (edges >= job.walk.max_edges) return;
     make_guide(scene, job.walk.fields, Side::camera, at, -f.d, guide);
     charge(scratch, scratch.ledger->camera_ticks);

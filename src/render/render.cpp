@@ -133,10 +133,10 @@ void note_rejected(RenderStats& stats, const std::vector<uint64_t>& pixels, cons
                                          p / uint64_t(film.width), film.dropped + film.passes, seed));
 }
 
-void teach(RenderState& state, const RenderOptions& options) {
+void teach(const Scene& scene, RenderState& state, const RenderOptions& options) {
   const double wall = wall_seconds(), cpu = process_cpu_seconds();
   const uint32_t dropped = state.film.dropped;
-  end_pass(state.learning, learn_options(options), state.film);
+  end_pass(scene, state.learning, learn_options(options), state.film);
   if (state.film.dropped != dropped) state.pyramid = {}, state.stats.ledger = {};
   state.stats.learn_seconds += wall_seconds() - wall;
   state.stats.learn_cpu_seconds += process_cpu_seconds() - cpu;
@@ -247,7 +247,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
       s.counters = {};
       s.rejected = 0;
     }
-    if (job.learning && film.chunks == 0) threads.run([&] { teach(state, options); });
+    if (job.learning && film.chunks == 0) threads.run([&] { teach(scene, state, options); });
     // Who watches, measuring errors perhaps, does so on his own time.
     read_clocks();
     const bool go_on = !monitor || monitor(state);

@@ -81,6 +81,12 @@ void add_light_of(Scene& scene, LightKind kind) {
     case LightKind::constant:
       add_light(scene, kind, Rgb(0.8f, 0.9f, 1));
       break;
+    case LightKind::sun: {
+      Light& light = scene.lights[add_light(scene, kind, Rgb(300, 250, 200))];
+      light.direction = glm::normalize(Vec3(0.3f, -1, -0.4f));
+      light.cone = 0.003f;
+      break;
+    }
     case LightKind::directional:
       scene.lights[add_light(scene, kind, Rgb(3, 2.5f, 2))].direction = glm::normalize(Vec3(0.3f, -1, -0.4f));
       break;
