@@ -26,7 +26,7 @@ namespace {
 struct Arguments {
   std::string scene, out, size, time, cpu_time,
       heuristic = "power", sampler = "sobol", log, reference, checkpoint, resume, techniques, integrator, save_fields,
-      load_fields, guide = "both", field_memory, field_structure, field_rule, field_rate, versus;
+      load_fields, guide = "both", field_memory, field_structure, field_rule, field_rate, versus, light_choice;
   std::optional<std::string> noise;
   std::vector<std::string> defines, features;
   int spp = 0, max_depth = std::numeric_limits<int>::min(), threads = 0, roulette_depth = 5;
@@ -77,9 +77,10 @@ LearnOptions learn_options(const Arguments& a, const std::string& integrator) {
                                                 {"--field-rule", !a.field_rule.empty()},
                                                 {"--field-rate", !a.field_rate.empty()},
                                                 {"--train", a.train > 0}};
+  const bool lights = a.light_choice == "learned";
   if (!is_guided(integrator))
     for (const auto& [option, given] : asked)
-      if (given)
+      if (given && !(lights && std::string_view(option) == "--field-memory"))
         throw Error(fmt::format("{}: the integrator {} learns no fields; add --integrator guided-bdpt or guided-path",
                                 option, integrator));
   if (!a.load_fields.empty() && !a.resume.empty())
@@ -91,6 +92,7 @@ LearnOptions learn_options(const Arguments& a, const std::string& integrator) {
     throw Error("--guide light: guided-path has no light subpaths; leave it out, or take guided-bdpt");
   if (!a.save_fields.empty()) check_file(a.save_fields);
   LearnOptions o;
+  o.lights = lights || a.light_choice.empty();
   o.guided = a.guide == "camera" ? Guided::camera : a.guide == "light" ? Guided::light : Guided::both;
   if (!a.field_structure.empty()) o.structure = Structure(index_of(structure_names, a.field_structure));
   if (!a.field_rule.empty()) o.rule = Rule(index_of(rule_names, a.field_rule));
@@ -143,6 +145,11 @@ RenderOptions render_options(const Arguments& a, Scene& scene) {
   o.next_event = !a.no_next_event;
   check_next_event(o, scene);
   o.learn = learn_options(a, o.integrator);
+  o.learn_lights = a.light_choice == "learned" && !is_guided(o.integrator);
+  if (o.learn_lights && o.integrator != "path" && o.integrator != "bdpt")
+    throw Error(fmt::format("--light-choice learned: {} does no next-event estimation; leave it out", o.integrator));
+  if (a.light_choice == "uniform" || a.light_choice == "power")
+    set_light_choice(scene, a.light_choice == "uniform" ? LightChoice::uniform : LightChoice::power);
   if (!a.versus.empty()) check_versus(a.versus, o.integrator);
   return o;
 }
@@ -253,6 +260,7 @@ void run_render(Arguments a) {
   run.scene_path = a.scene, run.out_path = a.out, run.defines = a.defines;
   run.load_fields = a.load_fields, run.save_fields = a.save_fields;
   run.options = render_options(a, scene);
+  run.light_choice = !a.light_choice.empty() ? a.light_choice : is_guided(run.options.integrator) ? "learned" : "tree";
   for (const std::string& n : scene.notes)
     if (!a.quiet) fmt::print(stderr, "ajar: note: {}\n", n);
   run.threads = a.threads > 0 ? a.threads : int(std::thread::hardware_concurrency());
@@ -346,6 +354,10 @@ void add_render(CLI::App& app) {
       ->check(CLI::IsMember({"recent", "visits"}));
   c->add_option("--train", a->train, "passes that train the fields and are dropped; after them the fields are frozen")
       ->check(CLI::Range(2, 1 << 20));
+  c->add_option("--light-choice", a->light_choice,
+                "of next-event estimation among lights: uniform, power, tree, or learned per cell (default: learned for "
+                "guided integrators, else tree)")
+      ->check(CLI::IsMember(listed(light_choice_names)));
   c->add_flag("--no-next-event", a->no_next_event, "lights are found by hitting them alone: path and guided-path");
   c->add_option("--save-fields", a->save_fields, "file to save the learned fields to");
   c->add_option("--load-fields", a->load_fields, "fields to start from, saved from a render of the same scene");

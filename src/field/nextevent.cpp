@@ -132,4 +132,9 @@ void record_next_event(const Scene& scene, const Guide& guide, const Vec3& p, Tr
   record(v, training.lights, entry, brought);
 }
 
+void record_place(const Guide& guide, const Vec3& ng, Training& training, Sightings& sightings) {
+  if (guide.missing) record_missing(sightings, guide.missing, glm::dot(ng, guide.wo) < 0 ? -ng : ng);
+  if (guide.cell != none) record_visit(training.of(guide.side), guide.cell);
+}
+
 }  // namespace ajar

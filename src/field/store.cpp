@@ -131,8 +131,8 @@ void write(Writer& w, const LearnedLights& v) {
   for (const LightEvidence& e : v.evidence) w.value(e.square), w.value(e.hits), w.value(e.tried);
 }
 
-// Whether the cuts are those of the scene's tree is for fits to say. cells: cuts, if there are any.
-void read(Reader& r, size_t cells, LearnedLights& v) {
+// Whether the cuts are those of the scene's tree is for fits to say. cells: cuts, if there are any; most: of entries.
+void read(Reader& r, size_t cells, uint32_t most, LearnedLights& v) {
   r.value(v.unit);
   r.require(v.unit > 0 && v.unit < double(infinity));
   v.cuts.resize(r.count(12));
@@ -140,7 +140,7 @@ void read(Reader& r, size_t cells, LearnedLights& v) {
   uint32_t next = 0;
   for (LightCut& c : v.cuts) {
     cut_members(r, c);
-    r.require(c.first == next && c.count > 0 && c.count <= most_starts && c.asks > 0 && c.asks <= 1);
+    r.require(c.first == next && c.count > 0 && c.count <= most && c.asks > 0 && c.asks <= 1);
     next += c.count;
   }
   v.entries.resize(r.count(28));
@@ -236,8 +236,8 @@ void read(Reader& r, Fields& fields) {
   read(r, fields.structure, fields.cells.size(), fields.w);
   r.value(fields.regions);
   read(r, fields.regions, fields.views);
-  read(r, fields.cells.size(), fields.lights);
-  read(r, 1, fields.starts);
+  read(r, fields.cells.size(), LightRules{}.most, fields.lights);
+  read(r, 1, most_starts, fields.starts);
   const size_t disks = r.count(sizeof(FieldCell));
   r.require(disks <= most_regions_of_sky);
   read(r, Structure::adaptive, disks, fields.disk);

@@ -59,7 +59,7 @@ float relative_importance(const Fields& fields, const Guide& guide) {
 // What a vertex received from the light, or the lens, itself: nothing where something is in the way.
 void teach_direct(const Work& work, Vertex& v, float received) {
   const Guide& guide = v.guide;
-  if (!work.sample.teaches || guide.cell == none) return;
+  if (!work.sample.teaches || !work.job.guided || guide.cell == none) return;
   const Fields& fields = *work.job.walk.fields;
   if (guide.side == Side::light) received *= relative_importance(fields, guide);
   v.received = received;
@@ -70,12 +70,13 @@ void teach_direct(const Work& work, Vertex& v, float received) {
 // Which light the vertex asked for, and what it got from it: nothing where something is in the way.
 void teach_lights(const Work& work, const Vertex& v, uint32_t place, float arrives) {
   record_next_event(*work.job.scene, v.guide, v.p, *work.job.training, place, arrives);
+  if (!work.job.guided) record_place(v.guide, v.ng, *work.job.training, work.scratch.sightings);
   charge(work.scratch, work.scratch.ledger->learn_ticks);
 }
 
 // What the light subpath brought to the first surface that it met, if it met one.
 void teach_start(const Work& work, const Subpath& light, const Walk& walk) {
-  if (!work.sample.teaches) return;
+  if (!work.sample.teaches || !work.job.guided) return;
   float brings = 0, per_watt = 0;
   if (light.n > 1) {
     const Vertex& first = light[1];
@@ -230,7 +231,7 @@ void trace_bdpt(const Job& job, Sample& sample, Scratch& scratch) {
     join_all(work, surface);
   } while (camera.n <= job.walk.max_edges && scatter(job.walk, sample.sampler, camera, walk));
   charge(scratch, scratch.ledger->camera_ticks);
-  if (!sample.teaches) return;
+  if (!sample.teaches || !job.guided) return;
   teach_camera(work);
   charge(scratch, scratch.ledger->learn_ticks);
 }

@@ -57,7 +57,7 @@ void end_pass(const Scene& scene, Learning& l, const LearnOptions& options, Film
   l.training = start_training(l.fields);
   l.sightings.clear();
   l.passes = 0;
-  if (l.fields.generation == blind(l)) drop_passes(film);
+  if (options.guided != Guided::neither && l.fields.generation == blind(l)) drop_passes(film);
 }
 
 }  // namespace ajar

@@ -31,14 +31,26 @@ Rgb hit_sky(const Scene& scene, Heuristic h, const Guide& before, const Vec3& fr
 }
 
 // Next-event estimation: s = 1, at the last of t vertices.
-Rgb direct(const Job& job, const Guide& guide, const Surface& at, Sampler& sampler, int t, Scratch& scratch) {
+Rgb direct(const Job& job, const Guide& guide, const Surface& at, Sampler& sampler, int t, bool teaches,
+           Scratch& scratch) {
   DirectSample d;
-  if (!choose_light_point(*job.scene, guide, at.p, sampler, d)) return Rgb(0);
-  const GuideEval e = evaluate(guide, d.wi, Mode::radiance);
-  if (is_black(e.f_cos)) return Rgb(0);
+  const auto learn = [&](float arrives) {
+    if (!teaches) return;
+    record_next_event(*job.scene, guide, at.p, *job.training, d.point.place, arrives);
+    record_place(guide, at.ng, *job.training, scratch.sightings);
+    charge(scratch, scratch.ledger->learn_ticks);
+  };
+  const bool found = choose_light_point(*job.scene, guide, at.p, sampler, d);
+  const GuideEval e = found ? evaluate(guide, d.wi, Mode::radiance) : GuideEval{};
+  if (is_black(e.f_cos)) {
+    learn(0);
+    return Rgb(0);
+  }
   ++scratch.counters.shadow_rays;
   ++scratch.ledger->at(1, t).rays;
-  if (!visible(*job.accel, segment_to(d, at.p, at.ng, at.error))) return Rgb(0);
+  const bool free = visible(*job.accel, segment_to(d, at.p, at.ng, at.error));
+  learn(free ? max_component(d.radiance) * std::abs(glm::dot(at.ng, d.wi)) / d.pdf : 0);
+  if (!free) return Rgb(0);
   const LightPoint& l = d.point;
   const bool alone = l.delta_position || l.delta_direction;
   const float w = alone ? 1 : hit_weight(job.walk.heuristic, d.pdf, e.pdf);
@@ -104,7 +116,7 @@ void trace_path(const Job& job, Sample& sample, Scratch& scratch) {
     make_guide(scene, job.walk.fields, Side::camera, at, -f.d, guide);
     charge(scratch, scratch.ledger->camera_ticks);
     if (job.next_event && connectable(guide) && !scene.lights.empty())
-      add(sample, scratch, 1, t, f.beta * direct(job, guide, at, sample.sampler, t, scratch));
+      add(sample, scratch, 1, t, f.beta * direct(job, guide, at, sample.sampler, t, sample.teaches, scratch));
     if (!scatter(job, guide, at, edges, sample.sampler, f)) return;
   }
 }

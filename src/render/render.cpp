@@ -152,9 +152,13 @@ std::vector<std::string> integrator_names() {
 
 bool is_guided(const std::string& integrator) { return find_integrator(integrator).guided; }
 
+bool learns(const RenderOptions& options) { return is_guided(options.integrator) || options.learn_lights; }
+
 LearnOptions learn_options(const RenderOptions& options) {
   LearnOptions o = options.learn;
-  if (!find_integrator(options.integrator).splats) o.guided = Guided::camera;
+  if (!is_guided(options.integrator))
+    o.guided = Guided::neither;
+  else if (!find_integrator(options.integrator).splats) o.guided = Guided::camera;
   return o;
 }
 
@@ -172,7 +176,7 @@ RenderState start_render(const Scene& scene, const RenderOptions& options) {
   RenderState state;
   const Integrator& integrator = find_integrator(options.integrator);
   state.film = make_film(scene.camera, scene.filter, integrator.splats);
-  if (integrator.guided) state.learning = start_learning(scene, state.film, options.learn);
+  if (learns(options)) state.learning = start_learning(scene, state.film, options.learn);
   return state;
 }
 
@@ -182,9 +186,12 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   Film& film = state.film;
   RenderStats& stats = state.stats;
   Job job = make_job(scene, accel, options, film);
-  if (find_integrator(options.integrator).guided) {
+  if (learns(options)) {
     job.learning = &state.learning, job.training = &state.learning.training;
     job.walk.fields = &state.learning.fields;
+  }
+  if (is_guided(options.integrator)) {
+    job.guided = true;
     job.walk.inner_share = film.splats ? 1 : 0;
     job.stored = film.splats;
   }

@@ -23,5 +23,7 @@ double pdf_next_event(const Scene& scene, const Guide& guide, const Vec3& p, con
 /// What the vertex got through the piece at place: irradiance divided by its density, 0 where something was in the way.
 void record_next_event(const Scene& scene, const Guide& guide, const Vec3& p, Training& training, uint32_t place,
                        float arrives);
+/// The vertex was here: cells come to be, and divide, where there are many. ng: its geometric normal.
+void record_place(const Guide& guide, const Vec3& ng, Training& training, Sightings& sightings);
 
 }  // namespace ajar
