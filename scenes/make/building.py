@@ -139,7 +139,7 @@ def write(name, nx, nz, storeys, seed, lamps):
     for room in rooms:
         for _ in range(lamps):
             place = lamp_place(rng, room)
-            watts = 0.4 * 10 ** rng.uniform(0, 2)
+            watts = 0.08 * 10 ** rng.uniform(0, 2)
             size = rng.uniform(0.015, 0.04)
             k = rng.randrange(8)
             if name == 'lights-5000':

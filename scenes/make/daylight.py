@@ -73,7 +73,7 @@ def write(name, lines):
 def window():
     out = [HEAD.format(title='window: a room of 5 m x 4 m with one window; sun and sky, a street and a house across',
                        tests='tiles of the sky that are seen through a window, and light subpaths that must find it',
-                       fov=70, eye='-2.2, 1.6, 1.7', target='1.2, 1.0, -1.2', sun='1.6, 1.25, 0.55', scale=1),
+                       fov=70, eye='-2.2, 1.6, 1.7', target='1.2, 1.0, -1.2', sun='1.6, 1.25, 0.55', scale=12),
            diffuse('wall', '0.75, 0.73, 0.70'), diffuse('floor', '0.36, 0.25, 0.16'), diffuse('wood', '0.45, 0.30, 0.18'),
            diffuse('cloth', '0.35, 0.12, 0.10'), diffuse('street', '0.25, 0.25, 0.25'), diffuse('brick', '0.42, 0.22, 0.16')]
     out += [cube((-2.7, -0.2, -2.2), (2.9, 0, 2.2), 'floor'), cube((-2.7, 2.7, -2.2), (2.9, 2.9, 2.2), 'wall'),
@@ -92,7 +92,7 @@ def window():
 def atrium():
     out = [HEAD.format(title='atrium: a court of 16 m x 16 m with a gallery on columns, under a roof with nine skylights',
                        tests='sun and sky from above, in patches, and deep shade under the gallery', fov=72,
-                       eye='-6.6, 1.7, 6.9', target='2.5, 3.0, -3.0', sun='0.35, 1, 0.22', scale=1),
+                       eye='-6.3, 1.7, 6.3', target='1.5, 2.6, -3.5', sun='0.35, 1, 0.22', scale=12),
            diffuse('stone', '0.62, 0.58, 0.52'), diffuse('floor', '0.40, 0.37, 0.34'), diffuse('column', '0.70, 0.68, 0.64'),
            diffuse('leaf', '0.10, 0.24, 0.07'), diffuse('ground', '0.22, 0.24, 0.18')]
     out += [cube((-8.3, -0.3, -8.3), (8.3, 0, 8.3), 'floor'), cube((-40, -0.6, -40), (40, -0.3, 40), 'ground')]

@@ -24,7 +24,7 @@ struct Work {
 
 // Shares that make the least noise go with the root of the second moment. What is not known of an entry is taken from
 // all of them.   (V2)
-double strength(const LightEvidence& e, double all) { return std::sqrt((double(e.square) + 4 * all) / (double(e.tried) + 4)); }
+double strength(const LightEvidence& e, double all) { return std::sqrt((double(e.square) + all) / (double(e.tried) + 1)); }
 
 struct Sum {
   double square = 0, hits = 0, tried = 0;
@@ -42,7 +42,7 @@ void weigh(const LightRules& rules, std::vector<Work>& cut) {
   const double all = sum.square / sum.tried;
   double mean = 0;
   for (const Work& w : cut) mean += w.share * strength(w.e, all);
-  const double mix = double(rules.mix) * sum.hits / (sum.hits + 32);
+  const double mix = double(rules.mix) * sum.hits / (sum.hits + 8);
   double total = 0;
   for (Work& w : cut) {
     const float weight = float(mix * strength(w.e, all) / std::max(mean, 1e-30) + (1 - mix));  // (V3)
@@ -53,7 +53,7 @@ void weigh(const LightRules& rules, std::vector<Work>& cut) {
   for (Work& w : cut) w.share /= total;
 }
 
-constexpr float least_tries = 16;  // of an entry that is divided
+constexpr float least_tries = 32;  // of an entry that is divided
 
 // Divides strong entries as long as what is known of them carries it.
 void divide(const LightTree& tree, const LightRules& rules, const Work& from, std::vector<Work>& to, size_t& room) {

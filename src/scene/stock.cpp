@@ -314,6 +314,7 @@ std::span<const FeatureScene> feature_scenes() {
       FeatureScene{"directional", [] { return lit_by(LightKind::directional); }},
       FeatureScene{"constant", [] { return lit_by(LightKind::constant); }},
       FeatureScene{"envmap", [] { return lit_by(LightKind::envmap); }},
+      FeatureScene{"sun", [] { return lit_by(LightKind::sun); }},
       FeatureScene{"open directional", [] { return under_sky(LightKind::directional); }},
       FeatureScene{"mesh lamp", [] { return lit_by(ShapeKind::mesh); }},
       FeatureScene{"sphere lamp", [] { return lit_by(ShapeKind::sphere); }},
