@@ -92,7 +92,7 @@ def window():
 def atrium():
     out = [HEAD.format(title='atrium: a court of 16 m x 16 m with a gallery on columns, under a roof with nine skylights',
                        tests='sun and sky from above, in patches, and deep shade under the gallery', fov=72,
-                       eye='-6.3, 1.7, 6.3', target='1.5, 2.6, -3.5', sun='0.35, 1, 0.22', scale=12),
+                       eye='-3.75, 1.7, 7.2', target='0.9, 3.0, -4', sun='0.35, 1, 0.22', scale=12),
            diffuse('stone', '0.62, 0.58, 0.52'), diffuse('floor', '0.40, 0.37, 0.34'), diffuse('column', '0.70, 0.68, 0.64'),
            diffuse('leaf', '0.10, 0.24, 0.07'), diffuse('ground', '0.22, 0.24, 0.18')]
     out += [cube((-8.3, -0.3, -8.3), (8.3, 0, 8.3), 'floor'), cube((-40, -0.6, -40), (40, -0.3, 40), 'ground')]

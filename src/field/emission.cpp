@@ -37,14 +37,23 @@ uint32_t choose_start(const LightTree& tree, const Fields* fields, float u) {
   return choose_by_power(tree, fields->starts.entries[entry].first, end_of(tree, fields->starts, entry), u);
 }
 
-// Part of the sky that an infinite light's direction belongs to; none if it cannot be started from.
-uint32_t region_of(const Scene& scene, const LightPoint& point, const Vec3& direction) {
+// How a start is found: its density (infinite: of its direction), the choice included, and the part of the sky that an
+// infinite light's direction belongs to.
+struct Start {
+  double density = 0;
+  uint32_t region = none;
+};
+Start start_at(const Scene& scene, const Fields* fields, const LightPoint& point, const Vec3& direction) {
   PieceDensity found[most_shares];
   const int n = densities_emission(scene, point, direction, found);
+  Start out;
   int best = 0;
-  for (int i = 1; i < n; ++i)
+  for (int i = 0; i < n; ++i) {
+    out.density += double(found[i].pdf) * start_pdf(scene.light_tree, fields, found[i].place);
     if (found[i].pdf > found[best].pdf) best = i;
-  return n > 0 ? scene.light_tree.region[found[best].place] : none;
+  }
+  if (n > 0 && point.infinite) out.region = scene.light_tree.region[found[best].place];
+  return out;
 }
 
 // Of the disk across the scene, as a square (G1), and its area over that of the square.
@@ -72,8 +81,7 @@ float disk_pdf(const Scene& scene, const Fields* fields, uint32_t region, const 
   return (even + guided) / (scene.radius * scene.radius);
 }
 
-void guide_place(const Scene& scene, const Fields* fields, Vec2 u, EmissionSample& out) {
-  const uint32_t region = region_of(scene, out.point, out.direction);
+void guide_place(const Scene& scene, const Fields* fields, uint32_t region, Vec2 u, EmissionSample& out) {
   const float mix = disk_mix(fields, region);
   if (!(mix > 0)) return;
   if (u.x < mix) {
@@ -108,15 +116,6 @@ bool guide_direction(const Fields* fields, Vec2 u, EmissionSample& out) {
   return out.pdf_direction > 0;
 }
 
-// Density of where a light subpath starts (infinite: of its direction), the choice included.
-double start_density(const Scene& scene, const Fields* fields, const LightPoint& point, const Vec3& direction) {
-  PieceDensity found[most_shares];
-  const int n = densities_emission(scene, point, direction, found);
-  double sum = 0;
-  for (int i = 0; i < n; ++i) sum += double(found[i].pdf) * start_pdf(scene.light_tree, fields, found[i].place);
-  return sum;
-}
-
 }  // namespace
 
 bool sample_emission(const Scene& scene, const Fields* fields, float u_choice, const Vec2& u_position,
@@ -128,8 +127,9 @@ bool sample_emission(const Scene& scene, const Fields* fields, float u_choice, c
   out.point.place = place;
   if (!emits) return false;
   if (out.point.infinite) {
-    guide_place(scene, fields, u_position, out);
-    out.pdf_direction = float(start_density(scene, fields, out.point, out.direction));
+    const Start start = start_at(scene, fields, out.point, out.direction);
+    out.pdf_direction = float(start.density);
+    guide_place(scene, fields, start.region, u_position, out);
   } else {
     out.pdf_position *= float(start_pdf(tree, fields, place));
     if (!guide_direction(fields, u_direction, out)) return false;
@@ -138,13 +138,14 @@ bool sample_emission(const Scene& scene, const Fields* fields, float u_choice, c
 }
 
 EmissionPdf pdf_emission(const Scene& scene, const Fields* fields, const LightPoint& point, const Vec3& direction) {
-  EmissionPdf e = pdf_emission(scene, point, direction);
+  const Start start = start_at(scene, fields, point, direction);
   if (point.infinite) {
-    e.direction = float(start_density(scene, fields, point, direction));
-    e.position = disk_pdf(scene, fields, region_of(scene, point, direction), square_of(scene, point.p, direction));
-    return e;
+    const bool guided = disk_mix(fields, start.region) > 0;
+    return {disk_pdf(scene, fields, start.region, guided ? square_of(scene, point.p, direction) : Vec2(0)),
+            float(start.density)};
   }
-  e.position = float(start_density(scene, fields, point, direction));
+  EmissionPdf e = pdf_emission(scene, point, direction);
+  e.position = float(start.density);
   float mix;
   const uint32_t cell = emission_cell(fields, point, mix);
   if (cell != none && e.direction > 0)
@@ -163,7 +164,7 @@ void record_start(const Scene& scene, const Fields& fields, Training& training, 
     record(fields.starts, training.starts, entry, power > 0 ? float(double(brings * share) / power) : 0);
   }
   if (!start.point.infinite) return;
-  const uint32_t region = region_of(scene, start.point, start.direction);
+  const uint32_t region = start_at(scene, nullptr, start.point, start.direction).region;
   if (region >= fields.disk.cells.size()) return;
   const float even = inv_pi / (scene.radius * scene.radius);
   record_square(fields.disk, training.disk, region, square_of(scene, start.point.p, start.direction), per_watt,

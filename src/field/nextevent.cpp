@@ -100,9 +100,16 @@ bool sample_next_event(const Scene& scene, const Guide& guide, const Vec3& p, fl
   const bool found = chosen && sample_direct(scene, scene.light_tree.pieces[place], p, u_point, out);
   out.point.place = place;
   if (!found) return false;
-  out.pdf *= pick;
-  if (out.point.infinite && scene.light_tree.pieces[place].part != none)  // other tiles may reach here
-    out.pdf = float(pdf_next_event(scene, guide, p, out.point, out.wi));
+  if (!is_tile(scene, scene.light_tree.pieces[place])) {
+    out.pdf *= pick;
+    return out.pdf > 0;
+  }
+  PieceDensity tiles[most_shares];  // others may reach here
+  const int n = densities_direct(scene, out.point, p, out.wi, tiles);
+  double sum = 0;
+  for (int i = 0; i < n; ++i)
+    sum += double(tiles[i].pdf) * double(tiles[i].place == place ? pick : light_pdf(scene, guide, p, tiles[i].place));
+  out.pdf = float(sum);
   return out.pdf > 0;
 }
 

@@ -166,6 +166,9 @@ void add_infinite(Gatherer& g, uint32_t id, double watts) {
   }
 }
 
+// A mesh of fewer is not worth the walk through the tree.
+constexpr size_t least_triangles = 16;
+
 // The ball about a shape's centre, as a box.
 void set_ball(const Vec3& center, float radius, LightBounds& b) { b.low = center - radius, b.high = center + radius; }
 
@@ -181,7 +184,7 @@ void add_area(Gatherer& g, uint32_t id, double watts) {
     b.axis = r.normal;
   } else if (shape.kind == ShapeKind::mesh) {
     const Mesh& mesh = g.scene.meshes[shape.mesh];
-    const bool divided = mesh.triangles.size() > 1 && g.out.size() + mesh.triangles.size() <= most_pieces;
+    const bool divided = mesh.triangles.size() >= least_triangles && g.out.size() + mesh.triangles.size() <= most_pieces;
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
       if (divided) b = {}, b.cos_reach = 0;
       for (int k = 0; k < 3; ++k) {

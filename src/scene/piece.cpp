@@ -67,13 +67,11 @@ uint32_t only_place(const Scene& scene, const LightPoint& point) {
 
 bool is_tiled(const Scene& scene, uint32_t light) { return scene.light_tree.tiling[light] != none; }
 
-float density_of(const PieceDensity* of, int n, uint32_t place) {
-  for (int i = 0; i < n; ++i)
-    if (of[i].place == place) return of[i].pdf;
-  return 0;
-}
-
 }  // namespace
+
+bool is_tile(const Scene& scene, const LightPiece& piece) {
+  return piece.part != none && !is_triangle(scene.lights[piece.light], piece);
+}
 
 bool sample_direct(const Scene& scene, const LightPiece& piece, const Vec3& x, const Vec2& u, DirectSample& out) {
   const Light& light = scene.lights[piece.light];
@@ -84,10 +82,8 @@ bool sample_direct(const Scene& scene, const LightPiece& piece, const Vec3& x, c
     out.radiance = environment(scene, piece.light, out.wi);
     out.point = light_point(scene, piece.light, out.wi);
     out.point.p = x;
-    PieceDensity found[most_shares];
-    const int n = densities_of_tiles(scene, piece.light, out.wi, found);
-    out.pdf = density_of(found, n, place_of(scene.light_tree, piece.light, piece.part));
-    return out.pdf > 0 && !is_black(out.radiance);
+    out.pdf = 0;
+    return !is_black(out.radiance);
   }
   float pdf;
   const Surface at = sample_triangle(scene, light.shape, piece.part, u, pdf);
@@ -130,11 +126,9 @@ bool sample_emission(const Scene& scene, const LightPiece& piece, const Vec2& u_
     out.direction = -w;
     out.radiance = environment(scene, piece.light, w);
     out.point = light_point(scene, piece.light, w);
-    PieceDensity found[most_shares];
-    const int n = densities_of_tiles(scene, piece.light, w, found);
-    out.pdf_direction = density_of(found, n, place_of(scene.light_tree, piece.light, piece.part));
+    out.pdf_direction = 0;
     place_on_disk(scene, u_position, out);
-    return out.pdf_direction > 0 && !is_black(out.radiance);
+    return !is_black(out.radiance);
   }
   const Surface at = sample_triangle(scene, light.shape, piece.part, u_position, out.pdf_position);
   const Vec3 local = to_cosine_hemisphere(u_direction);

@@ -83,7 +83,10 @@ bool sample_direct(const Scene& scene, uint32_t light, const Vec3& x, const Vec2
 /// A piece of a light (lighttree.h) seen from x, the same way; pdf is without the choice of the piece. Triangles are
 /// sampled by area.
 bool sample_direct(const Scene& scene, const LightPiece& piece, const Vec3& x, const Vec2& u, DirectSample& out);
-/// Density with which a piece finds a point; several tiles may reach to the same direction.
+/// Whether a piece is a tile of a light's sphere: then sample_direct and sample_emission leave its density at 0, and
+/// the densities below are to be asked: several tiles may reach to the same direction.
+bool is_tile(const Scene& scene, const LightPiece& piece);
+/// Density with which a piece finds a point; see is_tile.
 struct PieceDensity {
   uint32_t place = none;  ///< in the light tree
   float pdf = 0;          ///< as DirectSample::pdf; 1 for deltas
