@@ -273,9 +273,16 @@ void run_render(Arguments a) {
 
   RenderState state = start_render(scene, run.options);
   const std::string key = checkpoint_key(run, state.film);
-  if (!a.resume.empty()) load_checkpoint(a.resume, key, state);
-  if (!a.load_fields.empty())
-    go_on_from(load_fields(a.load_fields, scene_key(scene)), learn_options(run.options), state.learning, state.film);
+  if (!a.resume.empty()) {
+    load_checkpoint(a.resume, key, state);
+    if (learns(run.options) && fit_lights(scene.light_tree, learn_options(run.options), state.learning.fields))
+      throw Error(a.resume + ": what it learned of lights is of another scene; start again without --resume");
+  }
+  if (!a.load_fields.empty()) {
+    StoredFields stored = load_fields(a.load_fields, scene_key(scene));
+    fit_lights(scene.light_tree, learn_options(run.options), stored.fields);
+    go_on_from(std::move(stored), learn_options(run.options), state.learning, state.film);
+  }
   Log log = open_log(a, state.film);
   Progress progress = make_progress(a.quiet);
   double saved = state.stats.seconds;

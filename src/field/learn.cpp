@@ -390,8 +390,35 @@ void restrict_to(Fields& fields, Guided guided) {
   if (light) return;
   for (Field* f : {&fields.w, &fields.disk})
     for (FieldCell& c : f->cells) c.mix = 0;
+  const double unit = fields.starts.unit;
   fields.starts = {};
+  fields.starts.unit = unit;
   add_cut(fields.starts, none);
+}
+
+bool fit_lights(const LightTree& tree, const LearnOptions& options, Fields& fields) {
+  bool changed = false;
+  if (const size_t cuts = options.lights ? fields.cells.size() : 0;
+      fields.lights.cuts.size() != cuts || !fits(fields.lights, tree)) {
+    fields.lights = {};
+    for (size_t i = 0; i < cuts; ++i) add_cut(fields.lights, none);
+    changed = true;
+  }
+  if (!fits(fields.starts, tree)) {
+    const double unit = fields.starts.unit;
+    fields.starts = {};
+    fields.starts.unit = unit;
+    add_cut(fields.starts, none);
+    changed = true;
+  }
+  if (fields.disk.cells.size() != tree.regions.size()) {
+    const double unit = fields.disk.unit;
+    fields.disk = {};
+    fields.disk.unit = unit;
+    for (size_t i = 0; i < tree.regions.size(); ++i) add_cell(fields.disk, none, Structure::adaptive);
+    changed = true;
+  }
+  return changed;
 }
 
 }  // namespace ajar

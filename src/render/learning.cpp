@@ -35,6 +35,8 @@ void go_on_from(StoredFields stored, const LearnOptions& options, Learning& l, F
   w.unit *= scale;
   for (float& m : w.mean) m *= float(scale);
   for (FieldCell& c : w.cells) c.direct *= float(scale), c.total *= float(scale);
+  l.fields.starts.unit *= scale, l.fields.disk.unit *= scale;
+  for (float& m : l.fields.disk.mean) m *= float(scale);
   restrict_to(l.fields, options.guided);
   l.training = start_training(l.fields);
   l.first = film.dropped = (stored.passes + 1) / 2 * 2;

@@ -29,6 +29,9 @@ Fields start_fields(const Scene& scene, double pixels, const LearnOptions& optio
 /// paths: pairs of camera and light subpaths that were recorded. lights: of the scene; null: they are not learned.
 Fields learn(const Fields& fields, const Training& training, const Sightings& sightings, double paths,
              const LearnOptions& options, const LightTree* lights = nullptr);
+/// Makes stored fields those of this tree and of these options: what was learned of the lights of another tree (that of
+/// another LightChoice) is forgotten. False where nothing had to change.
+bool fit_lights(const LightTree& tree, const LearnOptions& options, Fields& fields);
 /// Takes the field away from the side that is not to be guided: its mix is 0.
 void restrict_to(Fields& fields, Guided guided);
 
