@@ -79,9 +79,15 @@ size_t divide(Builder& b, size_t from, size_t to) {
   return at > from && at < to ? at : half();
 }
 
+// Cosine of the angle a - b, at least 0; both in [0, pi].
+float cos_of_difference(float sin_a, float cos_a, float sin_b, float cos_b) {
+  return cos_a > cos_b ? 1 : cos_a * cos_b + sin_a * sin_b;
+}
+float sin_of(float cos) { return safe_sqrt(1 - cos * cos); }
+
 void set_node(const LightBounds& b, bool infinite, LightNode& n) {
   n.infinite = infinite;
-  n.axis = b.axis, n.cos_spread = b.cos_spread, n.cos_reach = b.cos_reach;
+  n.axis = b.axis, n.cos_spread = b.cos_spread, n.sin_spread = sin_of(b.cos_spread), n.cos_reach = b.cos_reach;
   n.weight = float(std::min(b.weight, 1e38));
   n.center = 0.5f * b.low + 0.5f * b.high;
   n.radius = infinite ? 0 : 0.5f * std::sqrt(length2(b.high - b.low)) * 1.0001f + 1e-6f * max_abs(n.center);
@@ -122,12 +128,6 @@ void set_regions(LightTree& t, uint32_t root) {
     for (uint32_t i = t.nodes[t.regions[r]].first; i < t.nodes[t.regions[r]].last; ++i) t.region[i] = r;
 }
 
-// Cosine of the angle a - b, at least 0; both in [0, pi].
-float cos_of_difference(float sin_a, float cos_a, float sin_b, float cos_b) {
-  return cos_a > cos_b ? 1 : cos_a * cos_b + sin_a * sin_b;
-}
-float sin_of(float cos) { return safe_sqrt(1 - cos * cos); }
-
 // Probability of the left child; negative where neither can be.
 float left_share(const LightTree& tree, const LightNode& n, const Receiver& at) {
   const float x = importance(tree, n.left, at), y = importance(tree, n.left + 1, at);
@@ -146,7 +146,7 @@ float importance(const LightTree& tree, uint32_t node, const Receiver& at) {
     if (!faces) return n.weight * tree.infinity_scale;
     const float c = glm::dot(at.n, n.axis);
     return n.weight * tree.infinity_scale *
-           std::max(cos_of_difference(sin_of(c), c, sin_of(n.cos_spread), n.cos_spread) + 1e-4f, 0.0f);
+           std::max(cos_of_difference(sin_of(c), c, n.sin_spread, n.cos_spread) + 1e-4f, 0.0f);
   }
   const Vec3 between = n.center - at.p;
   const float d2 = length2(between), r2 = n.radius * n.radius;
@@ -162,7 +162,7 @@ float importance(const LightTree& tree, uint32_t node, const Receiver& at) {
     if (!(received > 0)) return 0;
   }
   // From the cone of normals to the direction of the receiver.
-  const float c = -glm::dot(n.axis, w), out = cos_of_difference(sin_of(c), c, sin_of(n.cos_spread), n.cos_spread);
+  const float c = -glm::dot(n.axis, w), out = cos_of_difference(sin_of(c), c, n.sin_spread, n.cos_spread);
   const float sent = cos_of_difference(sin_of(out), out, sin_seen, cos_seen);
   if (!(sent > n.cos_reach - 1e-4f)) return 0;
   return n.weight * received * std::max(sent, 1e-3f) / nearest;

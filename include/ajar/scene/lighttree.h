@@ -47,7 +47,7 @@ struct LightNode {
   Vec3 center{0};
   float radius = 0;
   Vec3 axis{0, 0, 1};
-  float cos_spread = -1;  ///< of the cone about the axis that holds all normals
+  float cos_spread = -1, sin_spread = 0;  ///< of the cone about the axis that holds all normals
   float cos_reach = -1;   ///< of how far around a normal light goes
   float weight = 0;       ///< by which it is chosen, all else equal
   uint32_t first = 0, last = 0;  ///< its pieces, in the tree's order
