@@ -26,7 +26,7 @@ namespace {
 struct Arguments {
   std::string scene, out, size, time, cpu_time,
       heuristic = "power", sampler = "sobol", log, reference, checkpoint, resume, techniques, integrator, save_fields,
-      load_fields, guide = "both", field_memory, field_structure, field_rule, field_rate, versus, plan;
+      load_fields, guide = "both", field_memory, field_structure, field_rule, field_rate, versus, plan, light_choice;
   std::optional<std::string> noise;
   std::vector<std::string> defines, features;
   int spp = 0, max_depth = std::numeric_limits<int>::min(), threads = 0, roulette_depth = 5;
@@ -63,9 +63,10 @@ LearnOptions learn_options(const Arguments& a, const std::string& integrator, bo
                                                 {"--field-rule", !a.field_rule.empty()},
                                                 {"--field-rate", !a.field_rate.empty()},
                                                 {"--train", a.train > 0}};
+  const bool lights = a.light_choice == "learned";
   if (!may_learn)
     for (const auto& [option, given] : asked)
-      if (given)
+      if (given && !(lights && std::string_view(option) == "--field-memory"))
         throw Error(fmt::format("{}: the integrator {} learns no fields; add --integrator guided-bdpt or guided-path",
                                 option, integrator));
   if (!a.load_fields.empty() && !a.resume.empty())
@@ -77,6 +78,7 @@ LearnOptions learn_options(const Arguments& a, const std::string& integrator, bo
     throw Error("--guide light: guided-path has no light subpaths; leave it out, or take guided-bdpt");
   if (!a.save_fields.empty()) check_file(a.save_fields);
   LearnOptions o;
+  o.lights = lights || a.light_choice.empty();
   o.guided = a.guide == "camera" ? Guided::camera : a.guide == "light" ? Guided::light : Guided::both;
   if (!a.field_structure.empty()) o.structure = Structure(index_of(structure_names, a.field_structure));
   if (!a.field_rule.empty()) o.rule = Rule(index_of(rule_names, a.field_rule));
@@ -151,6 +153,11 @@ RenderOptions render_options(const Arguments& a, Scene& scene, bool planned) {
   if (a.plan == "all") o.integrator = "guided-bdpt";
   o.learn = learn_options(a, o.integrator, planned || is_guided(o.integrator));
   if (!a.plan.empty() && a.plan != "all" && a.plan != "auto") apply_parts(split(a.plan), o);
+  o.learn_lights = a.light_choice == "learned" && !is_guided(o.integrator);
+  if (o.learn_lights && o.integrator != "path" && o.integrator != "bdpt")
+    throw Error(fmt::format("--light-choice learned: {} does no next-event estimation; leave it out", o.integrator));
+  if (a.light_choice == "uniform" || a.light_choice == "power")
+    set_light_choice(scene, a.light_choice == "uniform" ? LightChoice::uniform : LightChoice::power);
   if (!a.versus.empty() && !planned) check_versus(a.versus, o.integrator);
   return o;
 }
@@ -288,9 +295,16 @@ void run_render(Arguments a) {
 
   RenderState state = start_render(scene, run.options);
   const std::string key = checkpoint_key(run, state.film);
-  if (!a.resume.empty()) load_checkpoint(a.resume, key, state);
-  if (!a.load_fields.empty() && is_guided(run.options.integrator))
-    go_on_from(load_fields(a.load_fields, scene_key(scene)), learn_options(run.options), state.learning, state.film);
+  if (!a.resume.empty()) {
+    load_checkpoint(a.resume, key, state);
+    if (learns(run.options) && fit_lights(scene.light_tree, learn_options(run.options), state.learning.fields))
+      throw Error(a.resume + ": what it learned of lights is of another scene; start again without --resume");
+  }
+  if (!a.load_fields.empty() && is_guided(run.options.integrator)) {
+    StoredFields stored = load_fields(a.load_fields, scene_key(scene));
+    fit_lights(scene.light_tree, learn_options(run.options), stored.fields);
+    go_on_from(std::move(stored), learn_options(run.options), state.learning, state.film);
+  }
   Log log = open_log(a, state.film);
   Progress progress = make_progress(a.quiet);
   double saved = state.stats.seconds;
@@ -373,6 +387,10 @@ void add_render(CLI::App& app) {
       ->check(CLI::IsMember({"recent", "visits"}));
   c->add_option("--train", a->train, "passes that train the fields and are dropped; after them the fields are frozen")
       ->check(CLI::Range(2, 1 << 20));
+  c->add_option("--light-choice", a->light_choice,
+                "of next-event estimation among lights: uniform, power, tree, or learned per cell (default: learned for "
+                "guided integrators, else tree)")
+      ->check(CLI::IsMember(listed(light_choice_names)));
   c->add_flag("--no-next-event", a->no_next_event, "lights are found by hitting them alone: path and guided-path");
   c->add_option("--save-fields", a->save_fields, "file to save the learned fields to");
   c->add_option("--load-fields", a->load_fields, "fields to start from, saved from a render of the same scene");

@@ -43,6 +43,8 @@ nlohmann::ordered_json options_json(const Run& run, const Film& film) {
                               {"sampler", name_of(o.sampler)},
                               {"next_event", o.next_event},
                               {"defines", run.defines}};
+  j["light_choice"] = run.light_choice;
+  if (o.learn_lights) j["field_memory"] = o.learn.memory;
   if (!is_guided(o.integrator)) return j;
   j["guide"] = name_of(learn_options(o).guided);
   j["field_memory"] = o.learn.memory;

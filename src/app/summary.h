@@ -15,6 +15,7 @@ namespace ajar {
 struct Run {
   std::string scene_path, out_path;
   std::vector<std::string> defines;
+  std::string light_choice;              ///< of light_choice_names
   std::string load_fields, save_fields;  ///< files, empty: none
   RenderOptions options;
   double load_seconds = 0, build_seconds = 0, write_seconds = 0;

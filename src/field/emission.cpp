@@ -1,6 +1,7 @@
 #include "ajar/field/emission.h"
 
 #include "ajar/core/warp.h"
+#include "ajar/scene/geometry.h"
 
 namespace ajar {
 namespace {
@@ -14,12 +15,90 @@ uint32_t emission_cell(const Fields* fields, const LightPoint& point, float& mix
   return mix > 0 ? cell : none;
 }
 
-}  // namespace
+const LightCut* cut_of(const Fields* fields) {
+  return fields && !fields->starts.cuts.empty() ? &fields->starts.cuts[0] : nullptr;
+}
 
-bool sample_emission(const Scene& scene, const Fields* fields, uint32_t light, const Vec2& u_position,
-                     const Vec2& u_direction, EmissionSample& out) {
-  Vec2 u = u_direction;
-  if (!sample_emission(scene, light, u_position, u, out)) return false;
+// Probability with which light subpaths start at a piece.   (V5)
+double start_pdf(const LightTree& tree, const Fields* fields, uint32_t place) {
+  const double power = power_of(tree, place, place + 1);
+  const LightCut* cut = cut_of(fields);
+  if (!cut) return power / tree.power_before.back();
+  const uint32_t entry = entry_of(fields->starts, *cut, place);
+  const double of_entry = power_of(tree, fields->starts.entries[entry].first, end_of(tree, fields->starts, entry));
+  return of_entry > 0 ? power / of_entry * double(share_of(fields->starts, *cut, entry)) : 0;
+}
+
+uint32_t choose_start(const LightTree& tree, const Fields* fields, float u) {
+  if (tree.pieces.size() == 1) return 0;
+  const LightCut* cut = cut_of(fields);
+  if (!cut) return choose_by_power(tree, 0, uint32_t(tree.pieces.size()), u);
+  const uint32_t entry = choose_entry(fields->starts, *cut, u);
+  return choose_by_power(tree, fields->starts.entries[entry].first, end_of(tree, fields->starts, entry), u);
+}
+
+// How a start is found: its density (infinite: of its direction), the choice included, and the part of the sky that an
+// infinite light's direction belongs to.
+struct Start {
+  double density = 0;
+  uint32_t region = none;
+};
+Start start_at(const Scene& scene, const Fields* fields, const LightPoint& point, const Vec3& direction) {
+  PieceDensity found[most_shares];
+  const int n = densities_emission(scene, point, direction, found);
+  Start out;
+  int best = 0;
+  for (int i = 0; i < n; ++i) {
+    out.density += double(found[i].pdf) * start_pdf(scene.light_tree, fields, found[i].place);
+    if (found[i].pdf > found[best].pdf) best = i;
+  }
+  if (n > 0 && point.infinite) out.region = scene.light_tree.region[found[best].place];
+  return out;
+}
+
+// Of the disk across the scene, as a square (G1), and its area over that of the square.
+Vec2 square_of(const Scene& scene, const Vec3& p, const Vec3& direction) {
+  const Frame f = make_frame(direction);
+  const Vec3 v = (p - scene.center) / scene.radius;
+  Vec2 at(glm::dot(f.s, v), glm::dot(f.t, v));
+  if (const float l2 = glm::dot(at, at); l2 > 1) at /= std::sqrt(l2);
+  return to_square({at.x, at.y, 0});
+}
+float density_on_disk(const Field& disk, uint32_t region, const Vec2& square) {
+  const Vec3 local = from_square(square);
+  const float x2 = local.x * local.x, y2 = local.y * local.y, m2 = std::max(x2, y2);
+  return density(disk.nodes, disk.cells[region].root, square) * (m2 > 0 ? (x2 + y2) / m2 : 1) * 0.25f;
+}
+
+float disk_mix(const Fields* fields, uint32_t region) {
+  return fields && region < fields->disk.cells.size() ? fields->disk.cells[region].mix : 0;
+}
+
+// Density of the start's place on the disk, per area.   (V6)
+float disk_pdf(const Scene& scene, const Fields* fields, uint32_t region, const Vec2& square) {
+  const float mix = disk_mix(fields, region), even = (1 - mix) * inv_pi;
+  const float guided = mix > 0 ? mix * density_on_disk(fields->disk, region, square) : 0;
+  return (even + guided) / (scene.radius * scene.radius);
+}
+
+void guide_place(const Scene& scene, const Fields* fields, uint32_t region, Vec2 u, EmissionSample& out) {
+  const float mix = disk_mix(fields, region);
+  if (!(mix > 0)) return;
+  if (u.x < mix) {
+    u.x = std::min(u.x / mix, one_minus_epsilon);
+    float over_square;
+    const Vec3 at = from_square(sample(fields->disk.nodes, fields->disk.cells[region].root, u, over_square));
+    const Frame f = make_frame(out.direction);
+    out.point.p = scene.center + scene.radius * (f.s * at.x + f.t * at.y - out.direction);
+  } else {
+    u.x = std::min((u.x - mix) / (1 - mix), one_minus_epsilon);
+    place_on_disk(scene, u, out);
+  }
+  out.pdf_position = disk_pdf(scene, fields, region, square_of(scene, out.point.p, out.direction));
+}
+
+// W at the lamp mixed with its own cosine.
+bool guide_direction(const Fields* fields, Vec2 u, EmissionSample& out) {
   float mix;
   const uint32_t cell = emission_cell(fields, out.point, mix);
   if (cell == none) return true;
@@ -37,13 +116,59 @@ bool sample_emission(const Scene& scene, const Fields* fields, uint32_t light, c
   return out.pdf_direction > 0;
 }
 
+}  // namespace
+
+bool sample_emission(const Scene& scene, const Fields* fields, float u_choice, const Vec2& u_position,
+                     const Vec2& u_direction, EmissionSample& out) {
+  const LightTree& tree = scene.light_tree;
+  if (tree.nodes.empty()) return false;
+  const uint32_t place = choose_start(tree, fields, u_choice);
+  const bool emits = sample_emission(scene, tree.pieces[place], u_position, u_direction, out);
+  out.point.place = place;
+  if (!emits) return false;
+  if (out.point.infinite) {
+    const Start start = start_at(scene, fields, out.point, out.direction);
+    out.pdf_direction = float(start.density);
+    guide_place(scene, fields, start.region, u_position, out);
+  } else {
+    out.pdf_position *= float(start_pdf(tree, fields, place));
+    if (!guide_direction(fields, u_direction, out)) return false;
+  }
+  return out.pdf_position > 0 && out.pdf_direction > 0;
+}
+
 EmissionPdf pdf_emission(const Scene& scene, const Fields* fields, const LightPoint& point, const Vec3& direction) {
+  const Start start = start_at(scene, fields, point, direction);
+  if (point.infinite) {
+    const bool guided = disk_mix(fields, start.region) > 0;
+    return {disk_pdf(scene, fields, start.region, guided ? square_of(scene, point.p, direction) : Vec2(0)),
+            float(start.density)};
+  }
   EmissionPdf e = pdf_emission(scene, point, direction);
+  e.position = float(start.density);
   float mix;
   const uint32_t cell = emission_cell(fields, point, mix);
   if (cell != none && e.direction > 0)
     e.direction = (1 - mix) * e.direction + mix * pdf(*fields, fields->w, cell, direction);
   return e;
+}
+
+void record_start(const Scene& scene, const Fields& fields, Training& training, const EmissionSample& start,
+                  float brings, float per_watt) {
+  const LightCut* cut = cut_of(&fields);
+  if (cut && start.point.place != none) {
+    const LightTree& tree = scene.light_tree;
+    const uint32_t entry = entry_of(fields.starts, *cut, start.point.place);
+    const double power = power_of(tree, fields.starts.entries[entry].first, end_of(tree, fields.starts, entry));
+    const float share = share_of(fields.starts, *cut, entry);
+    record(fields.starts, training.starts, entry, power > 0 ? float(double(brings * share) / power) : 0);
+  }
+  if (!start.point.infinite) return;
+  const uint32_t region = start_at(scene, nullptr, start.point, start.direction).region;
+  if (region >= fields.disk.cells.size()) return;
+  const float even = inv_pi / (scene.radius * scene.radius);
+  record_square(fields.disk, training.disk, region, square_of(scene, start.point.p, start.direction), per_watt,
+                even / start.pdf_position);
 }
 
 }  // namespace ajar

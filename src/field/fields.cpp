@@ -7,12 +7,15 @@ namespace ajar {
 const Field& Fields::of(Side side) const { return side == Side::camera ? q : w; }
 
 size_t find_stratum(const Fields& fields, const Field& field, uint32_t cell, const Vec3& local) {
-  uint32_t node = field.cells[cell].root;
   if (fields.structure != Structure::adaptive) {
     const Patch at = patch_of(local);
-    return 16 * size_t(field.nodes[node].child(at.zone)) + size_t(at.segment);
+    return 16 * size_t(field.nodes[field.cells[cell].root].child(at.zone)) + size_t(at.segment);
   }
-  Vec2 at = to_square(local);
+  return find_stratum(field, cell, to_square(local));
+}
+
+size_t find_stratum(const Field& field, uint32_t cell, Vec2 at) {
+  uint32_t node = field.cells[cell].root;
   int i = descend(at);
   while (field.nodes[node].is_divided(i)) {
     node = field.nodes[node].child(i);
@@ -43,7 +46,8 @@ size_t bytes(const Fields& f) {
     return x.cells.size() * sizeof(FieldCell) + x.nodes.size() * (sizeof(StrataNode) + 32 * sizeof(float));
   };
   return f.table.slots.size() * sizeof(CellTable::Slot) + f.table.probes.size() * sizeof(Probe) +
-         f.cells.size() * sizeof(Cell) + bytes(f.views) + of(f.q) + of(f.w);
+         f.cells.size() * sizeof(Cell) + bytes(f.views) + of(f.q) + of(f.w) + of(f.disk) +
+         bytes(f.lights) + bytes(f.starts);
 }
 
 }  // namespace ajar

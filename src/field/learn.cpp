@@ -220,7 +220,8 @@ FieldCell learn_cell(Work& w, uint32_t cell, double area, double paths, Trees& o
   return next;
 }
 
-Field learn_field(const Fields& fields, const Field& field, const Tallies& tallies, double paths,
+// structure: of its strata. Where its cells are not those of the fields, they have no size.
+Field learn_field(const Fields& fields, const Field& field, Structure structure, const Tallies& tallies, double paths,
                   const LearnOptions& options) {
   constexpr uint32_t block = 64;
   const uint32_t n = uint32_t(field.cells.size()), blocks = (n + block - 1) / block;
@@ -229,9 +230,10 @@ Field learn_field(const Fields& fields, const Field& field, const Tallies& talli
   next.unit = field.unit;
   next.cells.resize(n);
   parallel_for(blocks, [&](uint32_t b) {
-    Work work{fields.structure, fields.rule, &field, &tallies, &options, {}};
+    Work work{structure, fields.rule, &field, &tallies, &options, {}};
     for (uint32_t c = b * block; c < std::min(n, (b + 1) * block); ++c) {
-      const double edge = double(fields.table.edge(level_of(fields.cells[c].key)));
+      const bool sized = &field != &fields.disk;
+      const double edge = sized ? double(fields.table.edge(level_of(fields.cells[c].key))) : 1;
       next.cells[c] = learn_cell(work, c, edge * edge, paths, trees[b]);
     }
   });
@@ -303,6 +305,7 @@ void add_cells(Fields& fields, const Sightings& sightings, const LearnOptions& o
     insert(fields.table, key, id);
     add_cell(fields.q, parent, fields.structure);
     add_cell(fields.w, parent, fields.structure);
+    if (options.lights) add_cut(fields.lights, parent);
   }
 }
 
@@ -339,6 +342,19 @@ void doubt_cell(Field& field, FieldCell& cell, float kept, const LearnOptions& o
   if (cell.mix > 0) cell.mix = mix_for(options, weight);
 }
 
+// Which lights cells see, and which ones light subpaths start at.
+void learn_choices(const Fields& fields, const Training& training, const LearnOptions& options, const LightTree& tree,
+                   Fields& next) {
+  LightRules rules;
+  if (!(options.mix > 0)) rules.mix = 0;
+  rules.forget = options.forget;
+  rules.most = most_starts, rules.divide = 1 / 128.0f, rules.by_power = true;
+  next.starts = learn_lights(tree, fields.starts, training.starts, rules);
+  rules.most = LightRules{}.most, rules.divide = LightRules{}.divide, rules.by_power = false;
+  if (options.mix > 0) rules.least_asks = 1 / 8.0f;
+  if (options.lights) next.lights = learn_lights(tree, fields.lights, training.lights, rules);
+}
+
 }  // namespace
 
 Fields start_fields(const Scene& scene, double pixels, const LearnOptions& options) {
@@ -350,18 +366,24 @@ Fields start_fields(const Scene& scene, double pixels, const LearnOptions& optio
   const double area = 4 * std::numbers::pi * double(scene.radius) * double(scene.radius);
   f.q.unit = std::max(watts, 1e-30) / (area * std::numbers::pi);
   f.w.unit = pixels / (area * std::numbers::pi);
+  f.starts.unit = 16 * f.w.unit, f.disk.unit = f.w.unit;
+  add_cut(f.starts, none);
+  for (size_t i = 0; i < scene.light_tree.regions.size(); ++i) add_cell(f.disk, none, Structure::adaptive);
   return f;
 }
 
 Fields learn(const Fields& fields, const Training& training, const Sightings& sightings, double paths,
-             const LearnOptions& options) {
+             const LearnOptions& options, const LightTree* lights) {
   Fields next;
   next.structure = fields.structure, next.rule = fields.rule;
   next.generation = fields.generation + 1;
   next.table = fields.table;
   next.cells = fields.cells;
-  next.q = learn_field(fields, fields.q, training.q, paths, options);
-  next.w = learn_field(fields, fields.w, training.w, paths, options);
+  next.q = learn_field(fields, fields.q, fields.structure, training.q, paths, options);
+  next.w = learn_field(fields, fields.w, fields.structure, training.w, paths, options);
+  next.disk = learn_field(fields, fields.disk, Structure::adaptive, training.disk, paths, options);
+  next.lights = fields.lights, next.starts = fields.starts;
+  if (lights && !lights->nodes.empty()) learn_choices(fields, training, options, *lights, next);
   for (uint32_t c = 0; c < next.cells.size(); ++c) {
     Cell& cell = next.cells[c];
     cell.seen += float(training.q.visits[c] + training.w.visits[c]);
@@ -388,8 +410,42 @@ Fields doubt(const Fields& fields, const std::vector<Box>& moved, float kept, co
 }
 
 void restrict_to(Fields& fields, Guided guided) {
-  if (guided == Guided::both) return;
-  for (FieldCell& c : (guided == Guided::camera ? fields.w : fields.q).cells) c.mix = 0;
+  const bool camera = guided == Guided::both || guided == Guided::camera;
+  const bool light = guided == Guided::both || guided == Guided::light;
+  if (!camera)
+    for (FieldCell& c : fields.q.cells) c.mix = 0;
+  if (light) return;
+  for (Field* f : {&fields.w, &fields.disk})
+    for (FieldCell& c : f->cells) c.mix = 0;
+  const double unit = fields.starts.unit;
+  fields.starts = {};
+  fields.starts.unit = unit;
+  add_cut(fields.starts, none);
+}
+
+bool fit_lights(const LightTree& tree, const LearnOptions& options, Fields& fields) {
+  bool changed = false;
+  if (const size_t cuts = options.lights ? fields.cells.size() : 0;
+      fields.lights.cuts.size() != cuts || !fits(fields.lights, tree)) {
+    fields.lights = {};
+    for (size_t i = 0; i < cuts; ++i) add_cut(fields.lights, none);
+    changed = true;
+  }
+  if (!fits(fields.starts, tree)) {
+    const double unit = fields.starts.unit;
+    fields.starts = {};
+    fields.starts.unit = unit;
+    add_cut(fields.starts, none);
+    changed = true;
+  }
+  if (fields.disk.cells.size() != tree.regions.size()) {
+    const double unit = fields.disk.unit;
+    fields.disk = {};
+    fields.disk.unit = unit;
+    for (size_t i = 0; i < tree.regions.size(); ++i) add_cell(fields.disk, none, Structure::adaptive);
+    changed = true;
+  }
+  return changed;
 }
 
 }  // namespace ajar

@@ -11,7 +11,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind fields_kind = {"AJARfd03", "file of fields", "make one with --save-fields",
+constexpr FileKind fields_kind = {"AJARfd04", "file of fields", "make one with --save-fields",
                                   "learn the fields again with --save-fields"};
 
 bool is_amount(float x) { return x >= 0 && x < infinity; }
@@ -117,6 +117,56 @@ void read(Reader& r, uint32_t regions, Views& v) {
   v = learn_views(v, start_tallies(v), v.regions, 1);
 }
 
+template <class Io, class Part>
+void cut_members(Io& io, Part& c) {
+  io.value(c.first), io.value(c.count), io.value(c.asks);
+}
+
+void write(Writer& w, const LearnedLights& v) {
+  w.value(v.unit);
+  w.value(uint64_t(v.cuts.size()));
+  for (const LightCut& c : v.cuts) cut_members(w, c);
+  w.value(uint64_t(v.entries.size()));
+  for (const LightEntry& e : v.entries) w.value(e.node), w.value(e.first), w.value(e.weight), w.value(e.before);
+  for (const LightEvidence& e : v.evidence) w.value(e.square), w.value(e.hits), w.value(e.tried);
+}
+
+// Whether the cuts are those of the scene's tree is for fits to say. cells: cuts, if there are any; most: of entries.
+void read(Reader& r, size_t cells, uint32_t most, LearnedLights& v) {
+  r.value(v.unit);
+  r.require(v.unit > 0 && v.unit < double(infinity));
+  v.cuts.resize(r.count(12));
+  r.require(v.cuts.empty() || v.cuts.size() == cells);
+  uint32_t next = 0;
+  for (LightCut& c : v.cuts) {
+    cut_members(r, c);
+    r.require(c.first == next && c.count > 0 && c.count <= most && c.asks > 0 && c.asks <= 1);
+    next += c.count;
+  }
+  v.entries.resize(r.count(28));
+  v.evidence.resize(v.entries.size());
+  r.require(v.entries.size() == next);
+  for (LightEntry& e : v.entries) {
+    r.value(e.node), r.value(e.first), r.value(e.weight), r.value(e.before);
+    r.require(e.weight > 0 && e.weight < infinity);
+  }
+  for (LightEvidence& e : v.evidence) {
+    r.value(e.square), r.value(e.hits), r.value(e.tried);
+    r.require(is_amount(e.square) && is_amount(e.hits) && is_amount(e.tried));
+  }
+  for (const LightCut& c : v.cuts) {
+    r.require(v.entries[c.first].before == 0);
+    for (uint32_t i = c.first + 1; i < c.first + c.count; ++i)
+      r.require(v.entries[i].before >= v.entries[i - 1].before && v.entries[i].before < 1);
+  }
+}
+
+void read(Reader& r, const LearnedLights& v, LightTallies& t) {
+  r.array(t.square), r.array(t.hits), r.array(t.tried);
+  const size_t n = v.entries.size();
+  r.require(t.square.size() == n && t.hits.size() == n && t.tried.size() == n);
+}
+
 bool is_sound(const Frame& f) {
   const auto unit = [](const Vec3& v) { return std::abs(glm::dot(v, v) - 1) < 1e-3f; };
   const auto apart = [](const Vec3& a, const Vec3& b) { return std::abs(glm::dot(a, b)) < 1e-3f; };
@@ -155,6 +205,9 @@ void write(Writer& w, const Fields& fields) {
   write(w, fields.w);
   w.value(fields.regions), w.value(fields.views.regions);
   w.array(fields.views.tried), w.array(fields.views.seen);
+  write(w, fields.lights), write(w, fields.starts);
+  w.value(uint64_t(fields.disk.cells.size()));
+  write(w, fields.disk);
 }
 
 void read(Reader& r, Fields& fields) {
@@ -183,11 +236,19 @@ void read(Reader& r, Fields& fields) {
   read(r, fields.structure, fields.cells.size(), fields.w);
   r.value(fields.regions);
   read(r, fields.regions, fields.views);
+  read(r, fields.cells.size(), LightRules{}.most, fields.lights);
+  read(r, 1, most_starts, fields.starts);
+  const size_t disks = r.count(sizeof(FieldCell));
+  r.require(disks <= most_regions_of_sky);
+  read(r, Structure::adaptive, disks, fields.disk);
 }
 
 void write(Writer& w, const Training& training) {
   tallies_members(w, training.q), tallies_members(w, training.w);
   w.array(training.views.counts);
+  for (const LightTallies* t : {&training.lights, &training.starts})
+    w.array(t->square), w.array(t->hits), w.array(t->tried);
+  tallies_members(w, training.disk);
 }
 
 void read(Reader& r, const Fields& fields, Training& training) {
@@ -195,6 +256,9 @@ void read(Reader& r, const Fields& fields, Training& training) {
   read(r, fields.w, training.w);
   r.array(training.views.counts);
   r.require(training.views.counts.size() == start_tallies(fields.views).counts.size());
+  read(r, fields.lights, training.lights);
+  read(r, fields.starts, training.starts);
+  read(r, fields.disk, training.disk);
 }
 
 void write(Writer& w, const Sightings& sightings) {

@@ -8,6 +8,12 @@ namespace {
 
 void add(int64_t& to, int64_t amount) { std::atomic_ref<int64_t>(to).fetch_add(amount, std::memory_order_relaxed); }
 
+void add_record(const Field& field, Tallies& tallies, size_t stratum, float value, float weight) {
+  const double clamped = std::min(double(weight), largest_weight);
+  add(tallies.weight[stratum], to_fixed(clamped, weight_step));
+  if (value > 0) add(tallies.value[stratum], to_fixed(clamped * value / field.unit, value_step));
+}
+
 void resize(Tallies& t, const Field& f) {
   t.value.assign(16 * f.nodes.size(), 0);
   t.weight.assign(16 * f.nodes.size(), 0);
@@ -25,6 +31,8 @@ Training start_training(const Fields& fields) {
   resize(t.q, fields.q);
   resize(t.w, fields.w);
   t.views = start_tallies(fields.views);
+  t.lights = start_tallies(fields.lights), t.starts = start_tallies(fields.starts);
+  resize(t.disk, fields.disk);
   return t;
 }
 
@@ -32,10 +40,11 @@ void record(const Fields& fields, const Field& field, Tallies& tallies, uint32_t
             float weight) {
   const Vec3 local = fields.cells[cell].frame.to_local(w);
   if (!(local.z > 0) || !(weight > 0) || !(value >= 0)) return;
-  const size_t stratum = find_stratum(fields, field, cell, local);
-  const double clamped = std::min(double(weight), largest_weight);
-  add(tallies.weight[stratum], to_fixed(clamped, weight_step));
-  if (value > 0) add(tallies.value[stratum], to_fixed(clamped * value / field.unit, value_step));
+  add_record(field, tallies, find_stratum(fields, field, cell, local), value, weight);
+}
+
+void record_square(const Field& field, Tallies& tallies, uint32_t cell, const Vec2& at, float value, float weight) {
+  if (weight > 0 && value >= 0) add_record(field, tallies, find_stratum(field, cell, at), value, weight);
 }
 
 void record_direct(const Field& field, Tallies& tallies, uint32_t cell, float value) {

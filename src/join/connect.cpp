@@ -1,7 +1,5 @@
 #include "ajar/join/connect.h"
 
-#include "ajar/field/emission.h"
-
 namespace ajar {
 namespace {
 
@@ -23,13 +21,11 @@ bool join_hit(const Scene& scene, const Fields* fields, const Subpath& camera, c
   if (is_black(radiance)) return false;
   out.value = v.beta * radiance;
   out.arrives = radiance;
-  const double pick = scene.light_choice.pdf(point.light);
   const EmissionPdf emission = pdf_emission(scene, fields, point, v.guide.wo);
   const Vertex& before = camera[camera.n - 2];
   out.light = {};
-  out.camera = {camera.n,     v.own, pick * emission.position, before.own, emission.direction * v.back,
-                before.delta, v.sum};
-  out.shares = {camera.n > 2 ? direct_share(scene, fields, point, before.p, -v.guide.wo, v.distance2) : 0, 1};
+  out.camera = {camera.n, v.own, emission.position, before.own, emission.direction * v.back, before.delta, v.sum};
+  out.shares = {camera.n > 2 ? direct_share(scene, before, point, -v.guide.wo, v.distance2, emission) : 0, 1};
   return true;
 }
 
@@ -38,27 +34,28 @@ bool join_escape(const Scene& scene, const Fields* fields, uint32_t light, const
   const Rgb radiance = environment(scene, light, walk.d);
   if (is_black(radiance)) return false;
   out.value = walk.beta * radiance;
-  const LightPoint point = light_point(scene, light, walk.d);
-  const double pick = scene.light_choice.pdf(light);
-  const EmissionPdf emission = pdf_emission(scene, fields, point, -walk.d);
+  LightPoint point = light_point(scene, light, walk.d);
   const Vertex& before = camera[camera.n - 1];
+  point.p = before.p;
+  const EmissionPdf emission = pdf_emission(scene, fields, point, -walk.d);
   const double cosine = std::abs(glm::dot(before.ng, walk.d));
   out.light = {};
-  out.camera = {camera.n + 1, walk.pdf, pick * emission.direction, before.own, emission.position * cosine,
+  out.camera = {camera.n + 1, walk.pdf, emission.direction, before.own, emission.position * cosine,
                 before.delta, walk.sum};
-  out.shares = {camera.n > 1 ? direct_share(scene, fields, point, before.p, walk.d, 1) : 0, 1};
+  out.shares = {camera.n > 1 ? direct_share(scene, before, point, walk.d, 1, emission) : 0, 1};
   return true;
 }
 
 bool join_light(const Scene& scene, const Fields* fields, Sampler& sampler, const Subpath& camera, int t,
                 double light_paths, Candidate& out) {
-  float pick;
   const Vertex& c = camera[t - 1];
   DirectSample d;
-  if (!choose_light_point(scene, c.guide, c.p, sampler, pick, d)) return false;
+  const bool found = choose_light_point(scene, c.guide, c.p, sampler, d);
+  out.place = d.point.place;
+  if (!found) return false;
   const GuideEval e = evaluate(c.guide, d.wi, Mode::radiance);
-  out.arrives = d.radiance * std::abs(glm::dot(c.ng, d.wi)) / (pick * d.pdf);
-  out.value = c.beta * e.f_cos * d.radiance / (pick * d.pdf);
+  out.arrives = d.radiance * std::abs(glm::dot(c.ng, d.wi)) / d.pdf;
+  out.value = c.beta * e.f_cos * d.radiance / d.pdf;
   if (is_black(out.value)) return false;
   const LightPoint& point = d.point;
   const double d2 = point.infinite ? 1 : sqr(d.distance);
@@ -66,9 +63,9 @@ bool join_light(const Scene& scene, const Fields* fields, Sampler& sampler, cons
   const double cos_here = std::abs(glm::dot(c.ng, d.wi));
   const EmissionPdf emission = pdf_emission(scene, fields, point, -d.wi);
   const bool hittable = !point.delta_position && !point.delta_direction;
-  const double own = pick * double(point.infinite ? emission.direction : emission.position);
+  const double own = point.infinite ? emission.direction : emission.position;
   const double to_here = point.infinite ? emission.position : emission.direction;
-  const double nee = hittable ? double(d.pdf) * cos_light / d2 * pick : own;
+  const double nee = hittable ? double(d.pdf) * cos_light / d2 : double(d.pdf);
   out.light = {1, own, e.pdf * cos_light / d2, 1, 0, false, hittable ? 1.0 : 0.0};
   out.camera = end_at(camera.first(t), to_here * cos_here / d2, e.pdf_reverse);
   out.shares = {ratio(nee, own), light_paths};

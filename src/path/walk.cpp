@@ -1,7 +1,5 @@
 #include "ajar/path/walk.h"
 
-#include "ajar/field/emission.h"
-
 namespace ajar {
 namespace {
 
@@ -45,11 +43,12 @@ void start_camera(const Scene& scene, const WalkOptions& options, const Vec2& ra
 bool start_light(const Scene& scene, const WalkOptions& options, Sampler& sampler, Subpath& subpath, Walk& walk) {
   subpath.n = 0;
   if (scene.lights.empty()) return false;
-  float pick;
-  const uint32_t light = choose_light(scene, sampler, pick);
+  walk = Walk{};
+  const uint32_t choice = sampler.skip();
+  const float u_choice = scene.light_tree.pieces.size() > 1 ? sampler.at(choice).x : 0;
   const Vec2 u_position = sampler.next2(), u_direction = sampler.next2();
-  EmissionSample e;
-  if (!sample_emission(scene, options.fields, light, u_position, u_direction, e) || is_black(e.radiance)) return false;
+  EmissionSample& e = walk.start;
+  if (!sample_emission(scene, options.fields, u_choice, u_position, u_direction, e) || is_black(e.radiance)) return false;
   const LightPoint& point = e.point;
   const bool place = point.infinite || point.delta_position;
   const float cosine = place ? 1 : std::abs(glm::dot(point.n, e.direction));
@@ -57,11 +56,10 @@ bool start_light(const Scene& scene, const WalkOptions& options, Sampler& sample
   v.p = point.p, v.error = point.error, v.ng = point.n;
   v.infinite = point.infinite;
   v.delta = false;
-  v.own = double(pick) * (point.infinite ? e.pdf_direction : e.pdf_position);
+  v.own = point.infinite ? e.pdf_direction : e.pdf_position;
   v.sum = point.delta_position || point.delta_direction ? 0 : 1;
-  v.beta = e.radiance / (pick * (point.infinite ? e.pdf_direction : e.pdf_position));
+  v.beta = e.radiance / (point.infinite ? e.pdf_direction : e.pdf_position);
   v.point = point;
-  walk = Walk{};
   walk.side = Side::light;
   walk.o = place ? point.p : offset(point.p, point.n, point.error, e.direction);
   walk.d = e.direction;
@@ -71,12 +69,11 @@ bool start_light(const Scene& scene, const WalkOptions& options, Sampler& sample
   return true;
 }
 
-double direct_share(const Scene& scene, const Fields* fields, const LightPoint& point, const Vec3& x, const Vec3& wi,
-                    double distance2) {
-  if (point.delta_position || point.delta_direction) return 1;
-  const EmissionPdf emission = pdf_emission(scene, fields, point, -wi);
-  const double direct = pdf_direct(scene, point, x, wi);
+double direct_share(const Scene& scene, const Vertex& x, const LightPoint& point, const Vec3& wi, double distance2,
+                    const EmissionPdf& emission) {
+  const double direct = pdf_next_event(scene, x.guide, x.p, point, wi);
   if (point.infinite) return ratio(direct, emission.direction);
+  if (point.delta_position) return ratio(direct, emission.position);
   return ratio(direct * std::abs(glm::dot(point.n, wi)) / distance2, emission.position);
 }
 
@@ -98,13 +95,11 @@ bool step(const Scene& scene, const Accel& accel, const WalkOptions& options, Su
   v.delta = false, v.infinite = false;
   v.shines = 0, v.received = 0;
   v.shape = hit.shape, v.instance = hit.instance;
-  if (subpath.n == 2) {
-    if (walk.side == Side::camera)
-      v.own = raster_factor(scene.camera, before.p, v.p) * cosine;
-    else
-      walk.first_share = direct_share(scene, options.fields, before.point, v.p, -walk.d, v.distance2);
-  }
+  if (subpath.n == 2 && walk.side == Side::camera) v.own = raster_factor(scene.camera, before.p, v.p) * cosine;
   make_guide(scene, options.fields, walk.side, surface, -walk.d, v.guide);
+  if (subpath.n == 2 && walk.side == Side::light)
+    walk.first_share = direct_share(scene, v, before.point, -walk.d, v.distance2,
+                                    {walk.start.pdf_position, walk.start.pdf_direction});
   return true;
 }
 

@@ -59,11 +59,30 @@ float relative_importance(const Fields& fields, const Guide& guide) {
 // What a vertex received from the light, or the lens, itself: nothing where something is in the way.
 void teach_direct(const Work& work, Vertex& v, float received) {
   const Guide& guide = v.guide;
-  if (!work.sample.teaches || guide.cell == none) return;
+  if (!work.sample.teaches || !work.job.guided || guide.cell == none) return;
   const Fields& fields = *work.job.walk.fields;
   if (guide.side == Side::light) received *= relative_importance(fields, guide);
   v.received = received;
   record_direct(fields.of(guide.side), work.job.training->of(guide.side), guide.cell, received);
+  charge(work.scratch, work.scratch.ledger->learn_ticks);
+}
+
+// Which light the vertex asked for, and what it got from it: nothing where something is in the way.
+void teach_lights(const Work& work, const Vertex& v, uint32_t place, float arrives) {
+  record_next_event(*work.job.scene, v.guide, v.p, *work.job.training, place, arrives);
+  if (!work.job.guided) record_place(v.guide, v.ng, *work.job.training, work.scratch.sightings);
+  charge(work.scratch, work.scratch.ledger->learn_ticks);
+}
+
+// What the light subpath brought to the first surface that it met, if it met one.
+void teach_start(const Work& work, const Subpath& light, const Walk& walk) {
+  if (!work.sample.teaches || !work.job.guided) return;
+  float brings = 0, per_watt = 0;
+  if (light.n > 1) {
+    const Vertex& first = light[1];
+    brings = promise(first.guide, first.beta).all, per_watt = promise(first.guide, Rgb(1)).all;
+  }
+  record_start(*work.job.scene, *work.job.walk.fields, *work.job.training, walk.start, brings, per_watt);
   charge(work.scratch, work.scratch.ledger->learn_ticks);
 }
 
@@ -81,6 +100,7 @@ void trace_light_subpath(Work& work) {
     ++work.scratch.counters.light_rays;
     const bool hit = step(*job.scene, *job.accel, job.walk, light, walk, surface);
     charge(work.scratch, work.scratch.ledger->light_ticks);
+    if (light.n == (hit ? 2 : 1)) teach_start(work, light, walk);
     if (!hit) return;
     work.light_share = walk.first_share;
     if (!connectable(light[light.n - 1].guide)) continue;
@@ -125,6 +145,7 @@ void join_next_event(Work& work) {
                    add_if_visible(work, c, 1, t);
   charge_join(work.scratch, 1, t);
   teach_direct(work, camera[t - 1], lit ? luminance(c.arrives) * share_of_next_event(work, c) : 0);
+  if (work.sample.teaches) teach_lights(work, camera[t - 1], c.place, lit ? max_component(c.arrives) : 0);
 }
 
 // s >= 2: one of all light vertices of the chunk.
@@ -218,7 +239,7 @@ void trace_bdpt(const Job& job, Sample& sample, Scratch& scratch) {
     join_all(work, surface);
   } while (camera.n <= job.walk.max_edges && scatter(job.walk, sample.sampler, camera, walk));
   charge(scratch, scratch.ledger->camera_ticks);
-  if (!sample.teaches) return;
+  if (!sample.teaches || !job.guided) return;
   teach_camera(work);
   charge(scratch, scratch.ledger->learn_ticks);
 }

@@ -32,7 +32,8 @@ struct Job {
   bool next_event = true;
   bool stored = false;  ///< light subpaths were traced before, and are in the store
   const Vpls* vpls = nullptr;
-  const Learning* learning = nullptr;  ///< null: unguided
+  bool guided = false;  ///< fields guide subpaths, and learn from them; else lights alone are learned
+  const Learning* learning = nullptr;  ///< null: nothing is learned
   Training* training = nullptr;
 };
 

@@ -22,6 +22,7 @@ Learning start_learning(const Scene& scene, const Film& film, const LearnOptions
   Learning l;
   l.train = options.train + options.train % 2;  // passes are dropped in pairs
   l.fields = start_fields(scene, double(film.pixels()), options);
+  l.training = start_training(l.fields);
   return l;
 }
 
@@ -34,6 +35,8 @@ void go_on_from(StoredFields stored, const LearnOptions& options, Learning& l, F
   w.unit *= scale;
   for (float& m : w.mean) m *= float(scale);
   for (FieldCell& c : w.cells) c.direct *= float(scale), c.total *= float(scale);
+  l.fields.starts.unit *= scale, l.fields.disk.unit *= scale;
+  for (float& m : l.fields.disk.mean) m *= float(scale);
   restrict_to(l.fields, options.guided);
   l.training = start_training(l.fields);
   l.first = film.dropped = (stored.passes + 1) / 2 * 2;
@@ -49,14 +52,14 @@ bool is_recorded(const Learning& learning, uint64_t pixel, uint32_t pass) {
   return is_young(learning) || (!is_frozen(learning) && hash(pixel, pass) % rare_records == 0);
 }
 
-void end_pass(Learning& l, const LearnOptions& options, Film& film) {
+void end_pass(const Scene& scene, Learning& l, const LearnOptions& options, Film& film) {
   if (is_frozen(l) || ++l.passes < interval(l)) return;
   const double paths = double(film.pixels()) * l.passes / (is_young(l) ? 1 : rare_records);
-  l.fields = learn(l.fields, l.training, l.sightings, paths, options);
+  l.fields = learn(l.fields, l.training, l.sightings, paths, options, &scene.light_tree);
   l.training = start_training(l.fields);
   l.sightings.clear();
   l.passes = 0;
-  if (l.fields.generation == blind(l)) drop_passes(film);
+  if (options.guided != Guided::neither && l.fields.generation == blind(l)) drop_passes(film);
 }
 
 }  // namespace ajar

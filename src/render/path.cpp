@@ -9,41 +9,52 @@ namespace {
 float hit_weight(Heuristic h, double own, double other) { return float(1 / (1 + raise(h, ratio(other, own)))); }
 
 // Light that the path ran into: s = 0.
-Rgb hit_light(const Scene& scene, Heuristic h, const Surface& at, const Vec3& from, const Vec3& d, double pdf,
-              bool alone) {
+Rgb hit_light(const Scene& scene, Heuristic h, const Guide& before, const Surface& at, const Vec3& from, const Vec3& d,
+              double pdf, bool alone) {
   const LightPoint point = light_point(scene, at);
   if (point.light == none) return Rgb(0);
   const Rgb radiance = emitted(scene, at, -d);
   if (alone || is_black(radiance)) return radiance;
-  return radiance * hit_weight(h, pdf, double(scene.light_choice.pdf(point.light)) * pdf_direct(scene, point, from, d));
+  return radiance * hit_weight(h, pdf, pdf_next_event(scene, before, from, point, d));
 }
 
-Rgb hit_sky(const Scene& scene, Heuristic h, const Vec3& from, const Vec3& d, double pdf, bool alone) {
+Rgb hit_sky(const Scene& scene, Heuristic h, const Guide& before, const Vec3& from, const Vec3& d, double pdf,
+            bool alone) {
   Rgb sum(0);
   for (const uint32_t light : scene.infinite_lights) {
     const Rgb radiance = environment(scene, light, d);
     if (is_black(radiance)) continue;
-    const double other =
-        alone ? 0 : double(scene.light_choice.pdf(light)) * pdf_direct(scene, light_point(scene, light, d), from, d);
+    const double other = alone ? 0 : pdf_next_event(scene, before, from, light_point(scene, light, d), d);
     sum += radiance * hit_weight(h, pdf, other);
   }
   return sum;
 }
 
 // Next-event estimation: s = 1, at the last of t vertices.
-Rgb direct(const Job& job, const Guide& guide, const Surface& at, Sampler& sampler, int t, Scratch& scratch) {
-  float pick;
+Rgb direct(const Job& job, const Guide& guide, const Surface& at, Sampler& sampler, int t, bool teaches,
+           Scratch& scratch) {
   DirectSample d;
-  if (!choose_light_point(*job.scene, guide, at.p, sampler, pick, d)) return Rgb(0);
-  const GuideEval e = evaluate(guide, d.wi, Mode::radiance);
-  if (is_black(e.f_cos)) return Rgb(0);
+  const auto learn = [&](float arrives) {
+    if (!teaches) return;
+    record_next_event(*job.scene, guide, at.p, *job.training, d.point.place, arrives);
+    record_place(guide, at.ng, *job.training, scratch.sightings);
+    charge(scratch, scratch.ledger->learn_ticks);
+  };
+  const bool found = choose_light_point(*job.scene, guide, at.p, sampler, d);
+  const GuideEval e = found ? evaluate(guide, d.wi, Mode::radiance) : GuideEval{};
+  if (is_black(e.f_cos)) {
+    learn(0);
+    return Rgb(0);
+  }
   ++scratch.counters.shadow_rays;
   ++scratch.ledger->at(1, t).rays;
-  if (!visible(*job.accel, segment_to(d, at.p, at.ng, at.error))) return Rgb(0);
+  const bool free = visible(*job.accel, segment_to(d, at.p, at.ng, at.error));
+  learn(free ? max_component(d.radiance) * std::abs(glm::dot(at.ng, d.wi)) / d.pdf : 0);
+  if (!free) return Rgb(0);
   const LightPoint& l = d.point;
   const bool alone = l.delta_position || l.delta_direction;
-  const float w = alone ? 1 : hit_weight(job.walk.heuristic, double(pick) * d.pdf, e.pdf);
-  return e.f_cos * d.radiance * (w / (pick * d.pdf));
+  const float w = alone ? 1 : hit_weight(job.walk.heuristic, d.pdf, e.pdf);
+  return e.f_cos * d.radiance * (w / d.pdf);
 }
 
 // The ray that a path sends next, with what its end needs to know about it.
@@ -95,17 +106,17 @@ void trace_path(const Job& job, Sample& sample, Scratch& scratch) {
     charge(scratch, scratch.ledger->camera_ticks);
     if (!hits) {
       if (!scene.infinite_lights.empty())
-        add(sample, scratch, 0, t, f.beta * hit_sky(scene, h, f.from, f.d, f.pdf, f.alone));
+        add(sample, scratch, 0, t, f.beta * hit_sky(scene, h, guide, f.from, f.d, f.pdf, f.alone));
       return;
     }
     const Surface at = make_surface(scene, hit, f.o, f.d);
     if (scene.shapes[hit.shape].light != none)
-      add(sample, scratch, 0, t, f.beta * hit_light(scene, h, at, f.from, f.d, f.pdf, f.alone));
+      add(sample, scratch, 0, t, f.beta * hit_light(scene, h, guide, at, f.from, f.d, f.pdf, f.alone));
     if (edges >= job.walk.max_edges) return;
     make_guide(scene, job.walk.fields, Side::camera, at, -f.d, guide);
     charge(scratch, scratch.ledger->camera_ticks);
     if (job.next_event && connectable(guide) && !scene.lights.empty())
-      add(sample, scratch, 1, t, f.beta * direct(job, guide, at, sample.sampler, t, scratch));
+      add(sample, scratch, 1, t, f.beta * direct(job, guide, at, sample.sampler, t, sample.teaches, scratch));
     if (!scatter(job, guide, at, edges, sample.sampler, f)) return;
   }
 }

@@ -154,10 +154,10 @@ Job with_vpls(Job job, const Film& film, std::vector<Scratch>& scratches, Vpls& 
   return job;
 }
 
-void teach(RenderState& state, const RenderOptions& options) {
+void teach(const Scene& scene, RenderState& state, const RenderOptions& options) {
   const double wall = wall_seconds(), cpu = process_cpu_seconds();
   const uint32_t dropped = state.film.dropped;
-  end_pass(state.learning, learn_options(options), state.film);
+  end_pass(scene, state.learning, learn_options(options), state.film);
   if (state.film.dropped != dropped) state.pyramid = {}, state.stats.ledger = {};
   state.stats.learn_seconds += wall_seconds() - wall;
   state.stats.learn_cpu_seconds += process_cpu_seconds() - cpu;
@@ -173,9 +173,13 @@ std::vector<std::string> integrator_names() {
 
 bool is_guided(const std::string& integrator) { return find_integrator(integrator).guided; }
 
+bool learns(const RenderOptions& options) { return is_guided(options.integrator) || options.learn_lights; }
+
 LearnOptions learn_options(const RenderOptions& options) {
   LearnOptions o = options.learn;
-  if (!find_integrator(options.integrator).splats) o.guided = Guided::camera;
+  if (!is_guided(options.integrator))
+    o.guided = Guided::neither;
+  else if (!find_integrator(options.integrator).splats) o.guided = Guided::camera;
   return o;
 }
 
@@ -193,7 +197,7 @@ RenderState start_render(const Scene& scene, const RenderOptions& options) {
   RenderState state;
   const Integrator& integrator = find_integrator(options.integrator);
   state.film = make_film(scene.camera, scene.filter, integrator.splats);
-  if (!integrator.guided) return state;
+  if (!learns(options)) return state;
   LearnOptions learn = options.learn;
   if (integrator.vpls && learn.train == 0) learn.train = vpl_training;
   state.learning = start_learning(scene, state.film, learn);
@@ -206,9 +210,12 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   Film& film = state.film;
   RenderStats& stats = state.stats;
   Job job = make_job(scene, accel, options, film);
-  if (integrator.guided) {
+  if (learns(options)) {
     job.learning = &state.learning, job.training = &state.learning.training;
     job.walk.fields = &state.learning.fields;
+  }
+  if (is_guided(options.integrator)) {
+    job.guided = true;
     job.walk.inner_share = film.splats ? 1 : 0;
     job.stored = film.splats;
   }
@@ -276,7 +283,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
       s.counters = {};
       s.rejected = 0;
     }
-    if (job.learning && film.chunks == 0) threads.run([&] { teach(state, options); });
+    if (job.learning && film.chunks == 0) threads.run([&] { teach(scene, state, options); });
     // Who watches, measuring errors perhaps, does so on his own time.
     read_clocks();
     const bool go_on = !monitor || monitor(state);

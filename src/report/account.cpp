@@ -1,5 +1,6 @@
 #include "ajar/report/account.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace ajar {
@@ -35,6 +36,11 @@ Json tracing_json(const Ledger& l) {
           {"learn", per(double(l.learn_ticks), ticks)}};
 }
 
+Json lights_json(const LearnedLights& v) {
+  const auto rare = std::count_if(v.cuts.begin(), v.cuts.end(), [](const LightCut& c) { return c.asks < 1; });
+  return {{"entries", v.entries.size()}, {"bytes", bytes(v)}, {"rare", per(double(rare), double(v.cuts.size()))}};
+}
+
 Json fields_json(const Learning& learning, const Film& film) {
   const Fields& f = learning.fields;
   return {{"structure", structure_names[size_t(f.structure)]},
@@ -42,6 +48,7 @@ Json fields_json(const Learning& learning, const Film& film) {
           {"cells", f.cells.size()},
           {"nodes", {{"q", f.q.nodes.size()}, {"w", f.w.nodes.size()}}},
           {"generation", f.generation},
+          {"lights", lights_json(f.lights)},
           {"dropped_passes", dropped_passes(learning, film)}};
 }
 

@@ -20,6 +20,7 @@ constexpr double longest = 1e7;  // seconds
 const std::vector<std::string> heuristics = {"power", "balance"}, samplers = {"sobol", "independent"};
 const std::vector<std::string> structures(std::begin(structure_names), std::end(structure_names)),
     rules(std::begin(rule_names), std::end(rule_names)), rates = {"recent", "visits"};
+const std::vector<std::string> light_choices = {"tree", "learned"};
 const std::vector<std::string> guided = {"both", "camera", "light"};  // in the order of the enumerators
 
 /// An option of a method: how a suite sets it, how a report shows it. A new option is a line in the table.
@@ -56,6 +57,11 @@ const Option options_table[] = {
      [](const RenderOptions& o) { return Json(rules[size_t(o.learn.rule)]); }},
     {"field_rate", [](RenderOptions& o, const Element& e) { o.learn.forget = choice(e, rates) == 1 ? 1 : 0.5f; },
      [](const RenderOptions& o) { return Json(rates[o.learn.forget == 1]); }},
+    {"light_choice",
+     [](RenderOptions& o, const Element& e) { o.learn.lights = o.learn_lights = choice(e, light_choices) == 1; },
+     [](const RenderOptions& o) {
+       return Json(light_choices[o.learn.lights && (o.learn_lights || is_guided(o.integrator))]);
+     }},
     {"train", [](RenderOptions& o, const Element& e) { o.learn.train = uint32_t(integer(e, 0, 1 << 20)); },
      [](const RenderOptions& o) { return Json(o.learn.train); }},
 };

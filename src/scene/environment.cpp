@@ -27,13 +27,17 @@ Vec2 texels_of(const Distribution2D& table, const Vec3& w) {
   return {(u < 0 ? u + 1 : u) * float(table.width), theta * inv_pi * float(table.height)};
 }
 
-// Density over the map in texels, turned into solid angle. At the poles themselves it would be infinite.
+// Density per texel of the map, turned into solid angle. At the poles themselves it would be infinite.
+float to_solid(const Distribution2D& table, float per_texel, float sin_theta) {
+  return per_texel * float(table.width) * float(table.height) / (2 * pi * pi * std::max(sin_theta, 1e-7f));
+}
+
 float density(const Distribution2D& table, const Vec2& texels, float sin_theta) {
   const Cell c = cell_at(table, texels);
   const float top = table.mass({c.x0, c.y0}) * (1 - c.fx) + table.mass({c.x1, c.y0}) * c.fx;
   const float bottom = table.mass({c.x0, c.y1}) * (1 - c.fx) + table.mass({c.x1, c.y1}) * c.fx;
   const float per_texel = top * (1 - c.fy) + bottom * c.fy;
-  return per_texel * float(table.width) * float(table.height) / (2 * pi * pi * std::max(sin_theta, 1e-7f));
+  return to_solid(table, per_texel, sin_theta);
 }
 
 // Tent over (-1, 1).
@@ -62,20 +66,69 @@ float environment_pdf(const Environment& e, const Vec3& w) {
   return density(e.table, texels_of(e.table, w), std::sqrt(w.x * w.x + w.z * w.z));
 }
 
-// A texel by its weight, then a tent around its centre, folded at the poles where rows are repeated outwards: the sum
-// of tents is the bilinear interpolation of the weights.
+namespace {
+
+// A tent around a texel's centre, folded at the poles where rows are repeated outwards: the sum of tents is the bilinear
+// interpolation of the texels' weights.
+Vec2 around(const Environment& e, const Distribution2D::Cell& c, const Vec2& u) {
+  const float w = float(e.table.width), h = float(e.table.height);
+  const float x = float(c.x) + 0.5f + tent(u.x), y = float(c.y) + 0.5f + tent(u.y);
+  return {x < 0 ? x + w : (x >= w ? x - w : x), y < 0 ? -y : (y > h ? 2 * h - y : y)};
+}
+
+Vec3 direction_at(const Environment& e, const Vec2& texels, float& sin_theta) {
+  const float phi = 2 * pi * (texels.x / float(e.table.width)), theta = pi * (texels.y / float(e.table.height));
+  sin_theta = std::sin(theta);
+  return {std::sin(phi) * sin_theta, std::cos(theta), -std::cos(phi) * sin_theta};
+}
+
+// Probability of a texel when its tile is drawn from.
+float share_of(const Distribution2D& table, const Tile& tile, int x, int y) {
+  const float* row = table.columns.data() + size_t(y) * (size_t(table.width) + 1);
+  const float all = row[tile.high.x] - row[tile.low.x];
+  return all > 0 ? tile.rows.pdf(uint32_t(y - tile.low.y)) * (row[x + 1] - row[x]) / all : 0;
+}
+
+}  // namespace
+
+int tile_densities(const Environment& e, const Tiling& tiling, const Vec3& w, TileDensity out[most_shares]) {
+  const Cell c = cell_at(e.table, texels_of(e.table, w));
+  const int xs[] = {c.x0, c.x1, c.x0, c.x1}, ys[] = {c.y0, c.y0, c.y1, c.y1};
+  const float shares[] = {(1 - c.fx) * (1 - c.fy), c.fx * (1 - c.fy), (1 - c.fx) * c.fy, c.fx * c.fy};
+  const float solid = to_solid(e.table, 1, std::sqrt(w.x * w.x + w.z * w.z));
+  int n = 0;
+  for (int i = 0; i < 4; ++i) {
+    const uint32_t tile = tile_of(tiling, xs[i], ys[i]);
+    const float pdf = shares[i] * share_of(e.table, tiling.tiles[tile], xs[i], ys[i]) * solid;
+    int k = 0;
+    while (k < n && out[k].tile != tile) ++k;
+    if (k == n) out[n++] = {tile, 0};
+    out[k].pdf += pdf;
+  }
+  return n;
+}
+
+Vec3 sample_tile(const Environment& e, const Tile& tile, Vec2 u) {
+  const int y = tile.low.y + int(tile.rows.sample(u.y));
+  const float* row = e.table.columns.data() + size_t(y) * (size_t(e.table.width) + 1);
+  const float from = row[tile.low.x], at = from + u.x * (row[tile.high.x] - from);
+  const float* found = std::upper_bound(row + tile.low.x + 1, row + tile.high.x, at) - 1;
+  const float width = found[1] - found[0];
+  if (width > 0) u.x = std::clamp((at - found[0]) / width, 0.0f, one_minus_epsilon);
+  float sin_theta;
+  return direction_at(e, around(e, {int(found - row), y}, u), sin_theta);
+}
+
+// A texel by its weight, then a tent around it.
 Vec3 sample_environment(const Environment& e, Vec2 u, float& pdf) {
   pdf = 0;
   if (e.table.rows.sum == 0) return {0, 1, 0};
-  const float w = float(e.table.width), h = float(e.table.height);
   const Distribution2D::Cell c = e.table.sample_cell(u);
-  float x = float(c.x) + 0.5f + tent(u.x), y = float(c.y) + 0.5f + tent(u.y);
-  x = x < 0 ? x + w : (x >= w ? x - w : x);
-  y = y < 0 ? -y : (y > h ? 2 * h - y : y);
-  const float phi = 2 * pi * (x / w), theta = pi * (y / h);
-  const float sin_theta = std::sin(theta);
-  if (sin_theta > 1e-7f) pdf = density(e.table, {x, y}, sin_theta);
-  return {std::sin(phi) * sin_theta, std::cos(theta), -std::cos(phi) * sin_theta};
+  const Vec2 at = around(e, c, u);
+  float sin_theta;
+  const Vec3 w = direction_at(e, at, sin_theta);
+  if (sin_theta > 1e-7f) pdf = density(e.table, at, sin_theta);
+  return w;
 }
 
 double environment_total(const Environment& e) {

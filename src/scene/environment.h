@@ -12,6 +12,23 @@ Rgb environment_radiance(const Scene& scene, const Environment& e, const Vec3& w
 float environment_pdf(const Environment& e, const Vec3& w);
 /// Draws a unit local direction; pdf 0 where none was found.
 Vec3 sample_environment(const Environment& e, Vec2 u, float& pdf);
+/// Unit local direction of unit world direction w; stretch: solid angle there over solid angle here (1 for a rotation).
+inline Vec3 to_local(const Light& light, const Vec3& w, float& stretch) {
+  const Vec3 v = light.to_local * w;
+  const float l = std::sqrt(length2(v));
+  stretch = std::abs(glm::determinant(light.to_local)) / (l * l * l);
+  return v / l;
+}
+
+/// Densities per solid angle at unit local direction w of the tiles that reach there.
+struct TileDensity {
+  uint32_t tile = 0;
+  float pdf = 0;
+};
+int tile_densities(const Environment& e, const Tiling& tiling, const Vec3& w, TileDensity out[most_shares]);
+/// Draws a unit local direction by one tile.
+Vec3 sample_tile(const Environment& e, const Tile& tile, Vec2 u);
+
 /// Integral of the luminance over all local directions.
 double environment_total(const Environment& e);
 

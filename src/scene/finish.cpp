@@ -86,7 +86,7 @@ void prepare_light(Scene& scene, uint32_t id) {
     set_areas(mesh);
     if (!light.textured) light.rectangle = rectangle_of(mesh);
   }
-  if (light.kind == LightKind::constant || light.kind == LightKind::envmap) scene.infinite_lights.push_back(id);
+  if (is_infinite(light.kind) && light.kind != LightKind::directional) scene.infinite_lights.push_back(id);
   if (light.kind != LightKind::envmap && light.kind != LightKind::spot && light.kind != LightKind::projector) return;
   const glm::dmat3 linear(light.to_world);
   const double volume = std::abs(glm::determinant(linear));
@@ -103,14 +103,11 @@ void finish(Scene& scene) {
   prepare_materials(scene);
   for (Shape& shape : scene.shapes) shape.tangents = wants_tangents(scene, shape.material);
   scene.infinite_lights.clear();
-  std::vector<float> weights;
-  for (uint32_t i = 0; i < scene.lights.size(); ++i) {
-    prepare_light(scene, i);
-    weights.push_back(power(scene, i) * scene.lights[i].sampling_weight);
-  }
-  for (float& w : weights) w = std::min(w, std::numeric_limits<float>::max());
-  scene.light_choice = Distribution(weights);
+  for (uint32_t i = 0; i < scene.lights.size(); ++i) prepare_light(scene, i);
+  set_light_choice(scene, LightChoice::tree);
 }
+
+void set_light_choice(Scene& scene, LightChoice choice) { scene.light_tree = make_light_tree(scene, choice); }
 
 uint64_t count_triangles(const Scene& scene) {
   uint64_t n = 0;

@@ -240,6 +240,17 @@ Surface make_surface(const Scene& scene, const Hit& hit, const Vec3& ray_o, cons
   return s;
 }
 
+Surface sample_triangle(const Scene& scene, uint32_t id, uint32_t prim, const Vec2& u, float& pdf) {
+  const Mesh& mesh = scene.meshes[scene.shapes[id].mesh];
+  Surface s;
+  s.shape = id;
+  s.prim = prim;
+  s.bary = to_triangle(u);
+  set_point(mesh, s);
+  pdf = inverse(double(triangle_area(mesh, prim)));
+  return s;
+}
+
 Surface sample_area(const Scene& scene, uint32_t id, const Vec2& u, float& pdf) {
   const Shape& shape = scene.shapes[id];
   Surface s;

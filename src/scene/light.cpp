@@ -31,22 +31,18 @@ LightPoint point_of_delta(const Light& light, uint32_t id) {
   return p;
 }
 
-// Unit local direction of unit world direction w; stretch: solid angle there over solid angle here (1 for a rotation).
-Vec3 to_local(const Light& light, const Vec3& w, float& stretch) {
-  const Vec3 v = light.to_local * w;
-  const float l = std::sqrt(length2(v));
-  stretch = std::abs(glm::determinant(light.to_local)) / (l * l * l);
-  return v / l;
-}
+bool in_sun(const Light& light, const Vec3& w) { return length2(w + light.direction) < 2 * light.cone; }
 
 Rgb environment_at(const Scene& scene, const Light& light, const Vec3& w) {
   if (light.kind == LightKind::constant) return light.radiance.value;
+  if (light.kind == LightKind::sun) return in_sun(light, w) ? light.radiance.value : Rgb(0);
   float stretch;
   return environment_radiance(scene, scene.environments[light.environment], to_local(light, w, stretch));
 }
 
 float environment_pdf_at(const Scene& scene, const Light& light, const Vec3& w) {
   if (light.kind == LightKind::constant) return sphere_pdf;
+  if (light.kind == LightKind::sun) return in_sun(light, w) ? cone_pdf(light.cone) : 0;
   float stretch;
   const Vec3 local = to_local(light, w, stretch);
   return environment_pdf(scene.environments[light.environment], local) * stretch;
@@ -57,6 +53,11 @@ bool sample_environment_at(const Scene& scene, const Light& light, const Vec2& u
   if (light.kind == LightKind::constant) {
     w = to_sphere(u);
     pdf = sphere_pdf;
+    return true;
+  }
+  if (light.kind == LightKind::sun) {
+    w = glm::normalize(make_frame(-light.direction).to_world(to_cone(u, light.cone)));
+    pdf = cone_pdf(light.cone);
     return true;
   }
   const Vec3 local = sample_environment(scene.environments[light.environment], u, pdf);
@@ -120,7 +121,7 @@ Rgb delta_intensity(const Scene& scene, const Light& light, const Vec3& w) {
 
 float disk_pdf(const Scene& scene) { return 1 / (pi * scene.radius * scene.radius); }
 
-bool sample_direct_infinite(const Scene& scene, uint32_t id, const Vec2& u, DirectSample& out) {
+bool sample_direct_infinite(const Scene& scene, uint32_t id, const Vec3& x, const Vec2& u, DirectSample& out) {
   const Light& light = scene.lights[id];
   out.distance = infinity;
   if (light.kind == LightKind::directional) {
@@ -134,6 +135,7 @@ bool sample_direct_infinite(const Scene& scene, uint32_t id, const Vec2& u, Dire
     out.radiance = environment_at(scene, light, out.wi);
     out.point = point_at_infinity(-out.wi, id);
   }
+  out.point.p = x;
   return !is_black(out.radiance);
 }
 
@@ -165,10 +167,7 @@ bool sample_emission_infinite(const Scene& scene, uint32_t id, const Vec2& u_pos
   }
   out.point = point_at_infinity(out.direction, id);
   out.point.delta_direction = light.kind == LightKind::directional;
-  const Frame frame = make_frame(out.direction);
-  const Vec2 disk = to_disk(u_position);
-  out.point.p = scene.center + scene.radius * (frame.s * disk.x + frame.t * disk.y - out.direction);
-  out.pdf_position = disk_pdf(scene);
+  place_on_disk(scene, u_position, out);
   return !is_black(out.radiance);
 }
 
@@ -193,10 +192,6 @@ bool sample_emission_delta(const Scene& scene, uint32_t id, const Vec2& u_direct
   return !is_black(out.radiance);
 }
 
-bool is_infinite(LightKind kind) {
-  return kind == LightKind::constant || kind == LightKind::envmap || kind == LightKind::directional;
-}
-
 // Integral of a spot's share over directions.
 double spot_solid_angle(const Light& light) {
   const double c = std::acos(double(light.cos_cutoff)), b = std::acos(std::max(light.cos_beam, light.cos_cutoff));
@@ -210,7 +205,7 @@ double mean_luminance(const Scene& scene, const Slot& slot) { return std::max(lu
 
 bool sample_direct(const Scene& scene, uint32_t id, const Vec3& x, const Vec2& u, DirectSample& out) {
   const Light& light = scene.lights[id];
-  if (is_infinite(light.kind)) return sample_direct_infinite(scene, id, u, out);
+  if (is_infinite(light.kind)) return sample_direct_infinite(scene, id, x, u, out);
   if (light.kind != LightKind::area) return sample_direct_delta(scene, id, x, out);
   if (light.rectangle.area > 0) {
     out.radiance = light.radiance.value;
@@ -288,8 +283,7 @@ LightPoint light_point(const Scene& scene, const Surface& at) {
 
 Rgb environment(const Scene& scene, uint32_t id, const Vec3& w) {
   const Light& light = scene.lights[id];
-  return light.kind == LightKind::constant || light.kind == LightKind::envmap ? environment_at(scene, light, w)
-                                                                              : Rgb(0);
+  return light.kind == LightKind::directional ? Rgb(0) : environment_at(scene, light, w);
 }
 
 LightPoint light_point(const Scene& scene, uint32_t id, const Vec3& w) {
@@ -311,6 +305,9 @@ float power(const Scene& scene, uint32_t id) {
       break;
     case LightKind::envmap:
       watts = disk * environment_total(scene.environments[light.environment]);
+      break;
+    case LightKind::sun:
+      watts = 2 * std::numbers::pi * double(light.cone) * disk * luminance(light.radiance.value);
       break;
     case LightKind::directional:
       watts = disk * luminance(light.radiance.value);

@@ -81,6 +81,12 @@ void add_light_of(Scene& scene, LightKind kind) {
     case LightKind::constant:
       add_light(scene, kind, Rgb(0.8f, 0.9f, 1));
       break;
+    case LightKind::sun: {
+      Light& light = scene.lights[add_light(scene, kind, Rgb(300, 250, 200))];
+      light.direction = glm::normalize(Vec3(0.3f, -1, -0.4f));
+      light.cone = 0.003f;
+      break;
+    }
     case LightKind::directional:
       scene.lights[add_light(scene, kind, Rgb(3, 2.5f, 2))].direction = glm::normalize(Vec3(0.3f, -1, -0.4f));
       break;
@@ -308,6 +314,7 @@ std::span<const FeatureScene> feature_scenes() {
       FeatureScene{"directional", [] { return lit_by(LightKind::directional); }},
       FeatureScene{"constant", [] { return lit_by(LightKind::constant); }},
       FeatureScene{"envmap", [] { return lit_by(LightKind::envmap); }},
+      FeatureScene{"sun", [] { return lit_by(LightKind::sun); }},
       FeatureScene{"open directional", [] { return under_sky(LightKind::directional); }},
       FeatureScene{"mesh lamp", [] { return lit_by(ShapeKind::mesh); }},
       FeatureScene{"sphere lamp", [] { return lit_by(ShapeKind::sphere); }},

@@ -10,7 +10,7 @@ namespace ajar {
 
 /// One subpath of the camera, through the middle of a random pixel, or of a light.
 inline void trace_subpath(const Scene& scene, const Accel& accel, const WalkOptions& options, Side side, uint64_t path,
-                          uint32_t pass, int most, Subpath& out) {
+                          uint32_t pass, int most, Subpath& out, Training* training = nullptr) {
   Sampler sampler = make_sampler(SamplerKind::independent, 3, side, path, pass);
   Walk walk;
   Surface surface;
@@ -22,6 +22,18 @@ inline void trace_subpath(const Scene& scene, const Accel& accel, const WalkOpti
   }
   while (out.n < most && step(scene, accel, options, out, walk, surface)) {
     Candidate c;
+    if (out.n == 2 && side == Side::light && training) {
+      const Vertex& first = out[1];
+      record_start(scene, *options.fields, *training, walk.start, promise(first.guide, first.beta).all,
+                   promise(first.guide, Rgb(1)).all);
+    }
+    const Vertex& v = out[out.n - 1];
+    if (side == Side::camera && training && connectable(v.guide)) {
+      Sampler other = make_sampler(SamplerKind::independent, 5, side, path, pass * 64 + uint32_t(out.n));
+      const bool lit = join_light(scene, options.fields, other, out, out.n, 1, c) && visible(accel, c.segment);
+      record_next_event(scene, v.guide, v.p, *training, c.place, lit ? max_component(c.arrives) : 0);
+      c = {};
+    }
     if (side == Side::camera && scene.shapes[surface.shape].light != none &&
         join_hit(scene, options.fields, out, surface, c))
       out[out.n - 1].shines = luminance(c.arrives);
@@ -42,12 +54,12 @@ inline Fields train(const Scene& scene, const Accel& accel, int lessons = 5, int
     Subpath path;
     for (int i = 0; i < pairs; ++i)
       for (const Side side : {Side::camera, Side::light}) {
-        trace_subpath(scene, accel, options, side, uint64_t(i), uint32_t(lesson), 6, path);
+        trace_subpath(scene, accel, options, side, uint64_t(i), uint32_t(lesson), 6, path, &training);
         if (side == Side::camera && path.n > 1 && path[1].guide.cell != none)
           record_direct(fields.w, training.w, path[1].guide.cell, float(path[1].own));
         record_subpath(fields, training, sightings, path, side);
       }
-    fields = learn(fields, training, sightings, pairs, learning);
+    fields = learn(fields, training, sightings, pairs, learning, &scene.light_tree);
   }
   return fields;
 }

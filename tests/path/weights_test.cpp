@@ -63,9 +63,10 @@ double scatter_pdf(const Scene& scene, const WholePath& path, size_t before, siz
 }
 
 double light_density(const Scene& scene, const WholePath& path, size_t i) {
-  const EmissionPdf emission = pdf_emission(scene, path.fields, path.light, path.travel);
-  const double pick = scene.light_choice.pdf(path.light.light);
-  if (i == 0) return pick * (path.light.infinite ? emission.direction : emission.position);
+  LightPoint light = path.light;
+  if (light.infinite) light.p = path.points[1].p;
+  const EmissionPdf emission = pdf_emission(scene, path.fields, light, path.travel);
+  if (i == 0) return path.light.infinite ? emission.direction : emission.position;
   const Vec3 w = towards(path, i - 1, i);
   if (i == 1 && path.light.infinite) return to_area(emission.position, path.points[1], w, 1);
   const double pdf = i == 1 ? emission.direction : scatter_pdf(scene, path, i - 2, i - 1, i, Mode::importance);
@@ -91,10 +92,12 @@ OraclePath densities_afresh(const Scene& scene, const WholePath& path, double li
   out.hittable = !light.delta_position && !light.delta_direction;
   out.light_paths = light_paths;
   out.nee = out.vertices[0].light;
-  if (!out.hittable || path.points.size() < 3) return out;
+  if (path.points.size() < 3) return out;
   const Vec3 wi = towards(path, 1, 0);
-  const double direct = pdf_direct(scene, light, path.points[1].p, wi) * double(scene.light_choice.pdf(light.light));
-  out.nee = light.infinite ? direct : to_area(direct, path.points[0], wi, distance2(path, 0, 1));
+  Guide guide;
+  make_guide(scene, path.fields, Side::camera, path.points[1].surface, towards(path, 1, 2), guide);
+  const double direct = pdf_next_event(scene, guide, path.points[1].p, light, wi);
+  out.nee = light.infinite || light.delta_position ? direct : to_area(direct, path.points[0], wi, distance2(path, 0, 1));
   return out;
 }
 
@@ -207,10 +210,8 @@ void compare_all(const Tracer& tracer, Traced& light, Traced& camera, const Vec2
     if (!connectable(last.guide)) continue;
     Sampler same = sampler;
     if (join_light(scene, tally.fields, sampler, camera.path, t, n, c)) {
-      float pick;
-      const uint32_t chosen = choose_light(scene, same, pick);
       DirectSample d;
-      ASSERT_TRUE(sample_direct(scene, chosen, last.p, same.next2(), d));
+      ASSERT_TRUE(choose_light_point(scene, last.guide, last.p, same, d));
       tally.compare(scene, c, lit(d.point, d.wi, camera, t, false), 1);
     }
     for (int s = 2; s <= light.path.n; ++s)

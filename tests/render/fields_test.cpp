@@ -212,14 +212,14 @@ TEST_P(LearnedFields, GuidedEmissionSamplesItsDensity) {
   const Fields* f = &t.fields();
   ASSERT_EQ(t.scene.lights.size(), 1u);
   EmissionSample first;
-  ASSERT_TRUE(sample_emission(t.scene, f, 0, {0.4f, 0.7f}, {0.5f, 0.5f}, first));
+  ASSERT_TRUE(sample_emission(t.scene, f, 0.5f, {0.4f, 0.7f}, {0.5f, 0.5f}, first));
   ASSERT_NE(find(f->table, first.point.p, first.point.n).cell, none);
   EXPECT_GT(f->w.cells[find(f->table, first.point.p, first.point.n).cell].mix, 0.1f);
   int off = 0, moved = 0;
   const auto r = kit::chi_square_sphere(
       [&](const Vec2& u, float) -> std::optional<Vec3> {
         EmissionSample e;
-        if (!sample_emission(t.scene, f, 0, {0.4f, 0.7f}, u, e)) return std::nullopt;
+        if (!sample_emission(t.scene, f, 0.5f, {0.4f, 0.7f}, u, e)) return std::nullopt;
         const EmissionPdf p = pdf_emission(t.scene, f, e.point, e.direction);
         const EmissionPdf bare = pdf_emission(t.scene, e.point, e.direction);
         off += std::abs(p.direction - e.pdf_direction) > 1e-3f * p.direction;

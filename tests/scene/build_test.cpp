@@ -11,7 +11,7 @@ void expect_finished(const Scene& scene, const std::string& name) {
   EXPECT_TRUE(is_finite(scene.center)) << name;
   EXPECT_TRUE(scene.radius > 0.1f && scene.radius < 200) << name << " " << scene.radius;
   ASSERT_FALSE(scene.lights.empty()) << name;
-  EXPECT_TRUE(scene.light_choice.sum > 0 && std::isfinite(scene.light_choice.sum)) << name;
+  EXPECT_TRUE(scene.light_tree.power_before.back() > 0 && std::isfinite(scene.light_tree.power_before.back())) << name;
   for (uint32_t i = 0; i < scene.lights.size(); ++i) EXPECT_GT(power(scene, i), 0) << name;
   for (uint32_t i = 0; i < scene.materials.size(); ++i) EXPECT_EQ(material_problem(scene, i), "") << name;
   for (const Shape& shape : scene.shapes) {
@@ -121,7 +121,7 @@ TEST(Build, many_lights_are_as_many_and_the_seed_decides) {
   for (const int n : {1, 2, 100, 1000}) {
     const Scene scene = many_lights(n, 3);
     EXPECT_EQ(scene.lights.size(), size_t(n));
-    EXPECT_GT(scene.light_choice.sum, 0);
+    EXPECT_EQ(scene.light_tree.pieces.size(), size_t(n));
   }
   const Scene a = many_lights(9, 1), b = many_lights(9, 1), c = many_lights(9, 2);
   EXPECT_EQ(a.meshes.back().positions, b.meshes.back().positions);

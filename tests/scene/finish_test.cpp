@@ -14,7 +14,7 @@ TEST(Finish, EmptySceneIsFinite) {
   finish(scene);
   EXPECT_TRUE(is_finite(scene.center));
   EXPECT_EQ(scene.radius, 1);
-  EXPECT_EQ(scene.light_choice.size(), 0u);
+  EXPECT_TRUE(scene.light_tree.nodes.empty());
 }
 
 TEST(Finish, BoundsHoldEverything) {
@@ -61,17 +61,19 @@ TEST(Finish, LightsAreChosenByPowerTimesWeight) {
   kit::light_up(scene, d, Rgb(0));
   scene.lights[1].sampling_weight = 3;
   finish(scene);
-  EXPECT_NEAR(scene.light_choice.pdf(0), 1.0 / 3, 1e-5);
-  EXPECT_NEAR(scene.light_choice.pdf(1), 2.0 / 3, 1e-5);
-  EXPECT_EQ(scene.light_choice.pdf(2), 0);  // no area
-  EXPECT_EQ(scene.light_choice.pdf(3), 0);  // black
+  const LightTree& t = scene.light_tree;
+  ASSERT_EQ(t.pieces.size(), 2u);
+  const uint32_t first = place_of(t, 0, none), second = place_of(t, 1, none);
+  EXPECT_NEAR(power_of(t, second, second + 1) / power_of(t, first, first + 1), 2, 1e-5);
+  EXPECT_EQ(place_of(t, 2, 0), none);  // no area
+  EXPECT_EQ(place_of(t, 3, 0), none);  // black
 }
 
-TEST(Finish, DarkLightsAreChosenUniformly) {
+TEST(Finish, DarkLightsAreNotChosen) {
   Scene scene;
   for (int i = 0; i < 2; ++i) kit::light_up(scene, kit::add_mesh(scene, kit::rectangle(Mat4(1))), Rgb(0));
   finish(scene);
-  EXPECT_EQ(scene.light_choice.pdf(0), 0.5f);
+  EXPECT_TRUE(scene.light_tree.nodes.empty());
 }
 
 // A dim light among bright ones keeps its chance.
@@ -80,7 +82,9 @@ TEST(Finish, DimLightsAreNotForgotten) {
   for (const float l : {1e8f, 1e-6f, 1e12f})
     kit::light_up(scene, kit::add_mesh(scene, kit::rectangle(Mat4(1))), Rgb(l));
   finish(scene);
-  EXPECT_GT(scene.light_choice.pdf(1), 0);
+  const uint32_t place = place_of(scene.light_tree, 1, none);
+  ASSERT_NE(place, none);
+  EXPECT_GT(power_of(scene.light_tree, place, place + 1), 0);
 }
 
 TEST(Finish, RefusesNonsense) {

@@ -1,15 +1,24 @@
 // Enters: lights, and the field W.
-// Leaves: starts of light subpaths whose direction W guides, with densities (docs/method.md, "Two learned fields").
+// Leaves: starts of light subpaths: lights, points, and directions that W guides, with densities (docs/method.md, "Many
+// lights", "Two learned fields").
 #pragma once
 
-#include "ajar/field/fields.h"
+#include "ajar/field/training.h"
 #include "ajar/scene/light.h"
 
 namespace ajar {
 
-/// As in scene/light.h, for lights of any kind; only area lights are guided. fields may be null: then it is the same.
-bool sample_emission(const Scene& scene, const Fields* fields, uint32_t light, const Vec2& u_position,
+struct Guide;
+
+/// Draws one of the scene's lights, a point and a direction. The densities include the choice, in that of position or,
+/// for infinite lights, of direction. fields may be null.
+bool sample_emission(const Scene& scene, const Fields* fields, float u_choice, const Vec2& u_position,
                      const Vec2& u_direction, EmissionSample& out);
+/// The same densities; for infinite lights point.p is any point of the ray.
 EmissionPdf pdf_emission(const Scene& scene, const Fields* fields, const LightPoint& point, const Vec3& direction);
+/// What a light subpath that started here is expected to bring (Promise of its first vertex, of all that was emitted and
+/// of one watt; 0 where it hit nothing).
+void record_start(const Scene& scene, const Fields& fields, Training& training, const EmissionSample& start,
+                  float brings, float per_watt);
 
 }  // namespace ajar

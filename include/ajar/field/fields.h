@@ -4,6 +4,7 @@
 #pragma once
 
 #include "ajar/field/cells.h"
+#include "ajar/field/lights.h"
 #include "ajar/field/strata.h"
 #include "ajar/field/views.h"
 
@@ -62,6 +63,9 @@ struct Fields {
   std::vector<Cell> cells;
   Field q, w;
   Views views;
+  LearnedLights lights;     ///< V: a cut for every cell; none: lights are not learned
+  LearnedLights starts;     ///< where light subpaths start: one cut
+  Field disk;               ///< importance over the disk across the scene, for each region of the sky (LightTree)
   uint32_t regions = 0;     ///< top-level cells
   uint32_t generation = 0;  ///< how often it was learned
 
@@ -70,6 +74,8 @@ struct Fields {
 
 /// Where mean and weight of the stratum of a local direction above the cell's horizon are.
 size_t find_stratum(const Fields& fields, const Field& field, uint32_t cell, const Vec3& local);
+/// The same of a point of the unit square.
+size_t find_stratum(const Field& field, uint32_t cell, Vec2 square);
 /// Density per solid angle of the field's strata in a cell towards unit world direction w: 0 below the cell's horizon.
 float pdf(const Fields& fields, const Field& field, uint32_t cell, const Vec3& w);
 /// Draws a unit world direction in proportion to the field times the cosine at the cell (grid: to the field); leaves

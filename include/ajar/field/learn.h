@@ -8,7 +8,7 @@
 namespace ajar {
 
 /// Whose subpaths the fields guide. Both fields are learned in any case, and both tell roulette what to expect.
-enum class Guided : uint8_t { both, camera, light };
+enum class Guided : uint8_t { both, camera, light, neither };
 
 struct LearnOptions {
   Structure structure = Structure::adaptive;  ///< of fields that start from nothing
@@ -21,17 +21,21 @@ struct LearnOptions {
   float forget = 0.5f;              ///< share of older evidence that is kept; 1: a stratum is the mean of its records
   uint32_t train = 0;  ///< passes of training, even, after which fields are frozen; 0: they learn all along
   Guided guided = Guided::both;
+  bool lights = true;  ///< next-event estimation learns which lights a cell sees
 };
 
 /// Fields that know nothing: every look-up finds no cell. Grid and probes are as fine as the memory lets them be.
 Fields start_fields(const Scene& scene, double pixels, const LearnOptions& options = {});
-/// paths: pairs of camera and light subpaths that were recorded.
+/// paths: pairs of camera and light subpaths that were recorded. lights: of the scene; null: they are not learned.
 Fields learn(const Fields& fields, const Training& training, const Sightings& sightings, double paths,
-             const LearnOptions& options);
+             const LearnOptions& options, const LightTree* lights = nullptr);
 /// Fields of a scene before something in it moved, for the scene after: of the evidence of cells that the boxes touch,
 /// grown by the cell's own edge, the share `kept` counts from now on, and less of their mix is the field's. Values stay
 /// as a first guess.
 Fields doubt(const Fields& fields, const std::vector<Box>& moved, float kept, const LearnOptions& options);
+/// Makes stored fields those of this tree and of these options: what was learned of the lights of another tree (that of
+/// another LightChoice) is forgotten. False where nothing had to change.
+bool fit_lights(const LightTree& tree, const LearnOptions& options, Fields& fields);
 /// Takes the field away from the side that is not to be guided: its mix is 0.
 void restrict_to(Fields& fields, Guided guided);
 

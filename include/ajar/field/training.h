@@ -27,6 +27,8 @@ struct Tallies {
 struct Training {
   Tallies q, w;
   ViewTallies views;
+  LightTallies lights, starts;
+  Tallies disk;
 
   Tallies& of(Side side);
 };
@@ -37,6 +39,8 @@ Training start_training(const Fields& fields);
 /// the reciprocal of the density with which such segments are made, in units of that of a cosine lobe.
 void record(const Fields& fields, const Field& field, Tallies& tallies, uint32_t cell, const Vec3& w, float value,
             float weight);
+/// The same at a point of the unit square, of a field whose cells are such squares.
+void record_square(const Field& field, Tallies& tallies, uint32_t cell, const Vec2& at, float value, float weight);
 /// Irradiance (or the lens's importance) that a vertex in the cell got from next-event estimation; zeros too.
 void record_direct(const Field& field, Tallies& tallies, uint32_t cell, float value);
 void record_visit(Tallies& tallies, uint32_t cell);

@@ -4,6 +4,8 @@
 
 #include "ajar/accel/accel.h"
 #include "ajar/core/sampler.h"
+#include "ajar/field/emission.h"
+#include "ajar/field/nextevent.h"
 #include "ajar/path/prefix.h"
 #include "ajar/path/vertex.h"
 
@@ -41,28 +43,20 @@ struct Walk {
   double other_before = 0;  ///< area density of a_(n-2) as the other side would generate it from a_(n-1)
   double sum = 0;           ///< S of the vertex that the ray leaves (R2); set by step, also when the ray escapes
   double first_share = 1;   ///< v_1 of (R2), not raised
+  EmissionSample start;     ///< of a light subpath
   Rgb survival{1};          ///< throughput since the start, for roulette
   float promise = 0;        ///< what the fields expected the subpath to bring when it began; 0: they do not know
 };
 
-/// One of the scene's lights (there is at least one), and the probability of its choice. A single light costs no
-/// number.
-inline uint32_t choose_light(const Scene& scene, Sampler& sampler, float& pick) {
-  pick = 1;
-  if (scene.lights.size() == 1) return 0;
-  float u = sampler.next1();
-  const uint32_t light = scene.light_choice.sample(u);
-  pick = scene.light_choice.pdf(light);
-  return light;
-}
-
-/// Next-event estimation's light and point of it, seen from p; pick is the probability of the light. False where it
-/// gives nothing. Always takes the same pairs of numbers.
-inline bool choose_light_point(const Scene& scene, const Guide& guide, const Vec3& p, Sampler& sampler, float& pick,
+/// Next-event estimation's light and point of it, seen from p; the density includes the choice. False where it gives
+/// nothing. Takes two pairs of numbers, of which a single light uses one.
+inline bool choose_light_point(const Scene& scene, const Guide& guide, const Vec3& p, Sampler& sampler,
                                DirectSample& out) {
-  const uint32_t light = choose_light(scene, sampler, pick), place = sampler.skip();
-  if (guide.bsdf.opaque && !may_light(scene, light, p, guide.frame.n)) return false;
-  return sample_direct(scene, light, p, sampler.at(place), out);
+  const uint32_t choice = sampler.skip(), point = sampler.skip();
+  out.point.place = none;
+  if (guide.bsdf.opaque && scene.lights.size() == 1 && !may_light(scene, 0, p, guide.frame.n)) return false;
+  const float u = chooses_light(scene, guide) ? sampler.at(choice).x : 0;
+  return sample_next_event(scene, guide, p, u, sampler.at(point), out);
 }
 
 /// The largest probability of going on that roulette knows. A constant c would give paths through surfaces of albedo
@@ -136,9 +130,9 @@ inline Segment segment_to(const DirectSample& light, const Vec3& p, const Vec3& 
 
 inline bool visible(const Accel& accel, const Segment& s) { return !accel.occluded(s.o, s.d, s.t_max); }
 
-/// Density of next-event estimation from x over that of emission for the same point of a light, along unit wi (x to
-/// light).
-double direct_share(const Scene& scene, const Fields* fields, const LightPoint& point, const Vec3& x, const Vec3& wi,
-                    double distance2);
+/// Density of next-event estimation at a vertex x over that of emission for the same point of a light, along unit wi (x
+/// to light). emission: of that point and direction.
+double direct_share(const Scene& scene, const Vertex& x, const LightPoint& point, const Vec3& wi, double distance2,
+                    const EmissionPdf& emission);
 
 }  // namespace ajar

@@ -37,6 +37,6 @@ bool in_training(const Learning& learning);
 /// Whether the subpaths of this pixel are recorded in this pass.
 bool is_recorded(const Learning& learning, uint64_t pixel, uint32_t pass);
 /// Call after every finished pass. Drops the blind passes from the film when the time has come.
-void end_pass(Learning& learning, const LearnOptions& options, Film& film);
+void end_pass(const Scene& scene, Learning& learning, const LearnOptions& options, Film& film);
 
 }  // namespace ajar

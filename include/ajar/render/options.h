@@ -22,7 +22,8 @@ struct RenderOptions {
   Heuristic heuristic = Heuristic::power;
   SamplerKind sampler = SamplerKind::sobol;
   bool next_event = true;   ///< next-event estimation; only integrators without light subpaths can do without
-  LearnOptions learn;       ///< guided integrators only
+  LearnOptions learn;       ///< guided integrators, and others that learn lights
+  bool learn_lights = false;  ///< path and bdpt: learn which lights cells see (LearnOptions::lights), and nothing else
   bool techniques = false;  ///< keep an image of every (s, t)
 };
 
@@ -32,6 +33,8 @@ inline constexpr int deepest = 4096;
 std::vector<std::string> integrator_names();
 /// Whether it learns fields; throws Error for an unknown integrator.
 bool is_guided(const std::string& integrator);
+/// Whether anything is learned.
+bool learns(const RenderOptions& options);
 /// What its fields are learned with: an integrator without light subpaths guides the camera's alone.
 LearnOptions learn_options(const RenderOptions& options);
 

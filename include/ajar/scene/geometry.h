@@ -15,6 +15,8 @@ Surface make_surface(const Scene& scene, const Hit& hit, const Vec3& ray_o, cons
 /// point; 0 where the shape has no area. Fills p, error, ng, uv, bary, shape, prim. (Cylinders under a transform that
 /// is not a similarity about their axis: uniform in angle and height, with the area density that this has.)
 Surface sample_area(const Scene& scene, uint32_t shape, const Vec2& u, float& pdf);
+/// The same on one triangle of a mesh.
+Surface sample_triangle(const Scene& scene, uint32_t shape, uint32_t prim, const Vec2& u, float& pdf);
 /// Density per area with which sample_area finds this point.
 float area_pdf(const Scene& scene, uint32_t shape, uint32_t prim, const Vec2& uv);
 /// World area of a shape [m^2].

@@ -3,11 +3,18 @@
 #pragma once
 
 #include "ajar/core/distribution.h"
+#include "ajar/scene/lighttree.h"
 #include "ajar/scene/texture.h"
 
 namespace ajar {
 
-enum class LightKind : uint8_t { area, constant, envmap, point, spot, directional, projector };
+enum class LightKind : uint8_t { area, constant, envmap, point, spot, directional, projector, sun };
+
+/// Whether its light comes from infinitely far away.
+inline bool is_infinite(LightKind kind) {
+  return kind == LightKind::constant || kind == LightKind::envmap || kind == LightKind::directional ||
+         kind == LightKind::sun;
+}
 
 /// A mesh light that is one rectangle: corner + a x + b y, 0 <= a, b <= 1, shines to the side of cross(x, y).
 struct Rectangle {
@@ -19,7 +26,7 @@ struct Rectangle {
 
 struct Light {
   LightKind kind = LightKind::area;
-  Slot radiance{1.0f};  ///< area, constant: radiance [W/(m^2 sr)]; directional: irradiance on a perpendicular plane;
+  Slot radiance{1.0f};  ///< area, constant, sun: radiance [W/(m^2 sr)]; directional: irradiance on a perpendicular plane;
                         ///< point, spot: intensity [W/sr]; projector: the same along its axis, see plane
   float sampling_weight = 1;    ///< the user's factor on the chance of being chosen
   uint32_t shape = none;        ///< area: index into Scene::shapes
@@ -27,7 +34,8 @@ struct Light {
   Mat4 to_world{1};             ///< envmap, spot, projector: orientation (the latter two: position too)
   Mat3 to_local{1};             ///< inverse of to_world's linear part; made by finish
   Vec3 position{0};             ///< point, spot, projector
-  Vec3 direction{0, 0, 1};      ///< spot, directional: where the light travels to, unit
+  Vec3 direction{0, 0, 1};      ///< spot, directional, sun: where the light travels to, unit
+  float cone = 0;               ///< sun: 1 - cos of half the angle that it is seen under
   float cos_cutoff = 0;         ///< spot: nothing outside
   float cos_beam = 1;           ///< spot: full intensity inside; between the two it falls linearly with the angle
   Vec2 plane{1, 1};             ///< projector: half extents of its picture at distance 1, seen as by a Camera; the
@@ -36,8 +44,8 @@ struct Light {
   Rectangle rectangle;          ///< area: untextured rectangles; made by finish
 };
 
-/// A point of a light. For infinite lights (constant, envmap, directional) p is not a place: n is the direction *of
-/// travel* of the light, from infinity into the scene.
+/// A point of a light. For infinite lights n is the direction *of travel* of the light, from infinity into the scene, and
+/// p any point of its ray.
 struct LightPoint {
   Vec3 p{0};
   float error = 0;
@@ -45,6 +53,7 @@ struct LightPoint {
   Vec2 uv{0};  ///< area: of the shape; sample_direct gives it for textured lights alone
   uint32_t light = none;
   uint32_t prim = 0;
+  uint32_t place = none;  ///< of its piece in the light tree, where next-event estimation or emission chose one
   bool infinite = false;
   bool delta_position = false;   ///< point, spot, projector: a ray cannot hit it
   bool delta_direction = false;  ///< directional: a ray cannot find it
@@ -71,6 +80,21 @@ struct EmissionSample {
 /// One light seen from x. u in [0,1)^2. False where this sample gives x nothing. Spheres seen from outside are sampled
 /// by the cone that they fill, near rectangles by solid angle, other shapes by area.
 bool sample_direct(const Scene& scene, uint32_t light, const Vec3& x, const Vec2& u, DirectSample& out);
+/// A piece of a light (lighttree.h) seen from x, the same way; pdf is without the choice of the piece. Triangles are
+/// sampled by area.
+bool sample_direct(const Scene& scene, const LightPiece& piece, const Vec3& x, const Vec2& u, DirectSample& out);
+/// Whether a piece is a tile of a light's sphere: then sample_direct and sample_emission leave its density at 0, and
+/// the densities below are to be asked: several tiles may reach to the same direction.
+bool is_tile(const Scene& scene, const LightPiece& piece);
+/// Density with which a piece finds a point; see is_tile.
+struct PieceDensity {
+  uint32_t place = none;  ///< in the light tree
+  float pdf = 0;          ///< as DirectSample::pdf; 1 for deltas
+};
+inline constexpr int most_shares = 4;
+/// Fills the pieces that find a point of a light from x along unit wi; returns how many there are.
+int densities_direct(const Scene& scene, const LightPoint& point, const Vec3& x, const Vec3& wi,
+                     PieceDensity out[most_shares]);
 /// False where no point of the light can shine on the side of x that n points to; quick, and true in doubt.
 bool may_light(const Scene& scene, uint32_t light, const Vec3& x, const Vec3& n);
 /// Solid-angle density with which sample_direct at x would have found this point of this light along unit wi; 0 for
@@ -79,11 +103,20 @@ float pdf_direct(const Scene& scene, const LightPoint& point, const Vec3& x, con
 /// Emission of one light. u_position, u_direction in [0,1)^2.
 bool sample_emission(const Scene& scene, uint32_t light, const Vec2& u_position, const Vec2& u_direction,
                      EmissionSample& out);
+/// Puts an infinite light's point onto the disk across the scene, evenly, for its direction. u in [0,1)^2.
+void place_on_disk(const Scene& scene, const Vec2& u, EmissionSample& out);
 /// Densities with which sample_emission would have started here in this direction of travel.
 struct EmissionPdf {
   float position = 0, direction = 0;
 };
 EmissionPdf pdf_emission(const Scene& scene, const LightPoint& point, const Vec3& direction);
+/// Emission of one piece; the densities are those of the piece alone.
+bool sample_emission(const Scene& scene, const LightPiece& piece, const Vec2& u_position, const Vec2& u_direction,
+                     EmissionSample& out);
+/// The pieces that emission finds this point by, in this direction of travel: with densities of position, or, for
+/// infinite lights, of direction.
+int densities_emission(const Scene& scene, const LightPoint& point, const Vec3& direction,
+                       PieceDensity out[most_shares]);
 
 /// Radiance that leaves an emissive surface point towards unit wo; black on the back (emission is one-sided, ng's
 /// side).

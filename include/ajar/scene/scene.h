@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "ajar/core/distribution.h"
 #include "ajar/scene/camera.h"
 #include "ajar/scene/filter.h"
 #include "ajar/scene/light.h"
+#include "ajar/scene/lighttree.h"
 #include "ajar/scene/material.h"
 
 namespace ajar {
@@ -99,14 +99,16 @@ struct Scene {
   std::vector<std::string> notes;  ///< what the loader wants the user to know, one line each
 
   // made by finish()
-  Distribution light_choice;              ///< by power * sampling_weight
-  std::vector<uint32_t> infinite_lights;  ///< constant and envmap: those an escaping ray finds
+  LightTree light_tree;
+  std::vector<uint32_t> infinite_lights;  ///< constant, envmap and sun: those an escaping ray finds
   Vec3 center{0};                         ///< bounding sphere of everything that can be hit
   float radius = 1;
 };
 
 /// Computes what is derived (areas, bounds, light choice); call once after building or changing a scene.
 void finish(Scene& scene);
+/// Has next-event estimation choose another way; of a finished scene. learned is tree, for fields to do better.
+void set_light_choice(Scene& scene, LightChoice choice);
 /// Triangles of all meshes, each once however often it is placed.
 uint64_t count_triangles(const Scene& scene);
 

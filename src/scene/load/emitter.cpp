@@ -5,7 +5,7 @@
 namespace ajar {
 namespace {
 
-constexpr const char* supported = "supported: area, envmap, constant, point, spot, directional, projector";
+constexpr const char* supported = "supported: area, envmap, constant, point, spot, directional, projector, sky, sun, sunsky";
 
 DVec3 checked_direction(const Loader& loader, const Node& node, const DVec3& d) {
   const double length = glm::length(d);
@@ -23,13 +23,6 @@ Light make_light(Params& p, LightKind kind) {
 }
 
 void add(Loader& loader, Light&& light) { loader.scene.lights.push_back(std::move(light)); }
-
-// Rotation (and mirror) of a transform, without its scale and position; lights at infinity have neither.
-Mat4 orientation(const DMat4& m) {
-  DMat4 r(1);
-  for (int i = 0; i < 3; ++i) r[i] = DMat4::col_type(glm::normalize(DVec3(m[i])), 0);
-  return Mat4(r);
-}
 
 DMat4 regular_to_world(Params& p) {
   const DMat4 m = to_world(p);
@@ -136,14 +129,25 @@ void projector(Params& p) {
   add(p.loader, std::move(light));
 }
 
+void sky(Params& p) { load_daylight(p, true, false); }
+void sun(Params& p) { load_daylight(p, false, true); }
+void sunsky(Params& p) { load_daylight(p, true, true); }
+
 struct Entry {
   const char* type;
   void (*read)(Params&);
 };
 constexpr Entry entries[] = {{"constant", constant}, {"envmap", envmap},           {"point", point},
-                             {"spot", spot},         {"directional", directional}, {"projector", projector}};
+                             {"spot", spot},         {"directional", directional}, {"projector", projector},
+                             {"sky", sky},           {"sun", sun},                 {"sunsky", sunsky}};
 
 }  // namespace
+
+Mat4 orientation(const DMat4& m) {
+  DMat4 r(1);
+  for (int i = 0; i < 3; ++i) r[i] = DMat4::col_type(glm::normalize(DVec3(m[i])), 0);
+  return Mat4(r);
+}
 
 void load_emitter(Loader& loader, const Node& node, uint32_t shape) {
   Params p(loader, node);
@@ -163,7 +167,7 @@ void load_emitter(Loader& loader, const Node& node, uint32_t shape) {
     }
     entry->read(p);
   }
-  finish(p, {"id", "cache", "mis_compensation"});
+  finish(p, {"id", "cache", "mis_compensation", "albedo", "stretch", "resolution"});
 }
 
 }  // namespace ajar

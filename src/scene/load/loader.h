@@ -108,6 +108,8 @@ void finish(Params& params, std::initializer_list<const char*> harmless = {});
 DMat4 transform_of(const Loader& loader, const Node& node);
 /// The transform parameter, identity if there is none; an Error where it is singular or projective.
 DMat4 to_world(Params& params, const char* name = "to_world");
+/// Rotation (and mirror) of a transform, without its scale and position; lights at infinity have neither.
+Mat4 orientation(const DMat4& m);
 /// Axes equal in length and at right angles, to a relative 1e-4.
 bool is_similarity(const DMat4& m);
 
@@ -161,6 +163,8 @@ void load_shape(Loader& loader, const Node& node, uint32_t group);
 uint32_t load_shape_group(Loader& loader, const Node& node);
 /// shape: the one that emits, for area lights; none for lights of the scene.
 void load_emitter(Loader& loader, const Node& node, uint32_t shape);
+/// sky, sun, sunsky: adds one light for the sky, one for the sun.
+void load_daylight(Params& params, bool with_sky, bool with_sun);
 void load_sensor(Loader& loader, const Node& node);
 void load_integrator(Loader& loader, const Node& node);
 

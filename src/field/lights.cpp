@@ -1,0 +1,227 @@
+#include "ajar/field/lights.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "ajar/scene/surface.h"
+#include "fixed.h"
+
+namespace ajar {
+namespace {
+
+// More than this times what was promised counts as this (law 7).
+constexpr double largest_brought = 64;
+
+void add(int64_t& to, int64_t amount) { std::atomic_ref<int64_t>(to).fetch_add(amount, std::memory_order_relaxed); }
+
+struct Work {
+  uint32_t node = 0;
+  LightEvidence e;
+  float weight = 1;
+  double share = 0;  // of the cut, by its weight
+};
+
+// Shares that make the least noise go with the root of the second moment. What is not known of an entry is taken from
+// all of them.   (V2)
+double strength(const LightEvidence& e, double all) { return std::sqrt((double(e.square) + all) / (double(e.tried) + 1)); }
+
+struct Sum {
+  double square = 0, hits = 0, tried = 0;
+};
+Sum sum_of(const std::vector<Work>& cut) {
+  Sum s;
+  for (const Work& w : cut) s.square += double(w.e.square), s.hits += double(w.e.hits), s.tried += double(w.e.tried);
+  return s;
+}
+
+// The entries' new weights, and what becomes of their shares.
+void weigh(const LightRules& rules, std::vector<Work>& cut) {
+  const Sum sum = sum_of(cut);
+  if (!(sum.hits > 0)) return;
+  const double all = sum.square / sum.tried;
+  double mean = 0;
+  for (const Work& w : cut) mean += w.share * strength(w.e, all);
+  const double mix = double(rules.mix) * sum.hits / (sum.hits + 8);
+  double total = 0;
+  for (Work& w : cut) {
+    const float weight = float(mix * strength(w.e, all) / std::max(mean, 1e-30) + (1 - mix));  // (V3)
+    w.share *= double(weight / w.weight);
+    w.weight = weight;
+    total += w.share;
+  }
+  for (Work& w : cut) w.share /= total;
+}
+
+constexpr float least_tries = 32;  // of an entry that is divided
+
+// Divides strong entries as long as what is known of them carries it.
+void divide(const LightTree& tree, const LightRules& rules, const Work& from, std::vector<Work>& to, size_t& room) {
+  const LightNode& n = tree.nodes[from.node];
+  if (n.left == 0 || room == 0 || !(from.share > double(rules.divide)) || from.e.tried < least_tries) {
+    to.push_back(from);
+    return;
+  }
+  --room;
+  for (const uint32_t child : {n.left, n.left + 1}) {
+    Work half = from;
+    half.node = child;
+    half.e.square *= 0.5f, half.e.hits *= 0.5f, half.e.tried *= 0.5f, half.share *= 0.5;
+    divide(tree, rules, half, to, room);
+  }
+}
+
+// Joins children that are both in the cut and weak together.
+void unite(const LightTree& tree, const std::vector<uint32_t>& parents, double least, std::vector<Work>& cut) {
+  std::vector<Work> out;
+  for (const Work& w : cut) {
+    out.push_back(w);
+    while (out.size() > 1) {
+      const Work &b = out.back(), &a = out[out.size() - 2];
+      const uint32_t parent = parents[b.node];
+      if (b.node == 0 || parents[a.node] != parent || tree.nodes[parent].left != a.node) break;
+      if (a.share + b.share > least) break;
+      Work both = a;
+      both.node = parent, both.share += b.share;
+      both.weight = float((a.share * double(a.weight) + b.share * double(b.weight)) / std::max(both.share, 1e-30));
+      both.e.square += b.e.square, both.e.hits += b.e.hits, both.e.tried += b.e.tried;
+      out.pop_back();
+      out.back() = both;
+    }
+  }
+  cut = std::move(out);
+}
+
+void append(std::vector<Work>& cut, const LightTree& tree, const LightRules& rules, LearnedLights& to) {
+  LightCut c;
+  c.first = uint32_t(to.entries.size()), c.count = uint32_t(cut.size());
+  const Sum sum = sum_of(cut);
+  if (sum.tried > 0) c.asks = float(std::clamp(64 * (sum.hits + 1) / sum.tried, double(rules.least_asks), 1.0));  // (V4)
+  double total = 0, before = 0;
+  for (Work& w : cut) {
+    const LightNode& n = tree.nodes[w.node];
+    if (rules.by_power) w.share = power_of(tree, n.first, n.last) * double(w.weight);
+    total += w.share;
+  }
+  for (const Work& w : cut) {
+    to.entries.push_back({w.node, tree.nodes[w.node].first, w.weight, float(std::min(before / total, 1 - 0x1p-24))});
+    to.evidence.push_back(w.e);
+    before += w.share;
+  }
+  to.cuts.push_back(c);
+}
+
+// A cut's entries with the evidence of the records. Shares are how often entries were chosen, where that was seen.
+void take(const LearnedLights& v, const LightTallies& t, const LightCut& cut, const LightRules& rules,
+          std::vector<Work>& out) {
+  double tried = 0;
+  for (uint32_t i = cut.first; i < cut.first + cut.count; ++i) tried += double(t.tried[i]);
+  out.clear();
+  for (uint32_t i = cut.first; i < cut.first + cut.count; ++i) {
+    Work w{v.entries[i].node, v.evidence[i], v.entries[i].weight, double(share_of(v, cut, i))};
+    if (tried > 0) {  // (V1)
+      w.e.square = rules.forget * w.e.square + float(double(t.square[i]) * value_step);
+      w.e.hits = rules.forget * w.e.hits + float(t.hits[i]);
+      w.e.tried = rules.forget * w.e.tried + float(t.tried[i]);
+      w.share = (32 * w.share + double(t.tried[i])) / (32 + tried);
+    }
+    out.push_back(w);
+  }
+}
+
+}  // namespace
+
+uint32_t entry_of(const LearnedLights& v, const LightCut& cut, uint32_t place) {
+  uint32_t at = cut.first;
+  for (uint32_t n = cut.count; n > 1;) {
+    const uint32_t half = n / 2;
+    at += v.entries[at + half].first <= place ? half : 0;
+    n -= half;
+  }
+  return at;
+}
+
+uint32_t choose_entry(const LearnedLights& v, const LightCut& cut, float& u) {
+  uint32_t at = cut.first;
+  for (uint32_t n = cut.count; n > 1;) {
+    const uint32_t half = n / 2;
+    at += v.entries[at + half].before <= u ? half : 0;
+    n -= half;
+  }
+  const float share = share_of(v, cut, at);
+  u = share > 0 ? std::clamp((u - v.entries[at].before) / share, 0.0f, one_minus_epsilon) : u;
+  return at;
+}
+
+LightTallies start_tallies(const LearnedLights& v) {
+  const size_t n = v.entries.size();
+  return {std::vector<int64_t>(n), std::vector<int64_t>(n), std::vector<int64_t>(n)};
+}
+
+void record(const LearnedLights& v, LightTallies& tallies, uint32_t entry, float brought) {
+  add(tallies.tried[entry], 1);
+  if (!(brought > 0)) return;
+  add(tallies.hits[entry], 1);
+  const double b = std::min(double(brought) / v.unit, largest_brought);
+  add(tallies.square[entry], to_fixed(b * b, value_step));
+}
+
+void add_cut(LearnedLights& v, uint32_t from) {
+  LightCut cut;
+  if (from == none) {
+    cut.first = uint32_t(v.entries.size()), cut.count = 1;
+    v.entries.push_back({});
+    v.evidence.push_back({});
+  } else {
+    cut = v.cuts[from];
+    for (uint32_t i = 0; i < cut.count; ++i) {
+      v.entries.push_back(LightEntry(v.entries[cut.first + i]));
+      LightEvidence e = v.evidence[cut.first + i];
+      e.square *= 0.25f, e.hits *= 0.25f, e.tried *= 0.25f;
+      v.evidence.push_back(e);
+    }
+    cut.first = uint32_t(v.entries.size()) - cut.count;
+  }
+  v.cuts.push_back(cut);
+}
+
+LearnedLights learn_lights(const LightTree& tree, const LearnedLights& v, const LightTallies& tallies,
+                           const LightRules& rules) {
+  LearnedLights next;
+  next.unit = v.unit;
+  next.cuts.reserve(v.cuts.size()), next.entries.reserve(v.entries.size());
+  std::vector<uint32_t> parents(tree.nodes.size(), none);
+  for (uint32_t i = 0; i < tree.nodes.size(); ++i)
+    if (const uint32_t left = tree.nodes[i].left; left != 0) parents[left] = parents[left + 1] = i;
+  std::vector<Work> cut, divided;
+  for (const LightCut& old : v.cuts) {
+    take(v, tallies, old, rules, cut);
+    weigh(rules, cut);
+    unite(tree, parents, 0.2 * double(rules.divide), cut);
+    size_t room = cut.size() < rules.most ? rules.most - cut.size() : 0;
+    divided.clear();
+    for (const Work& w : cut) divide(tree, rules, w, divided, room);
+    append(divided, tree, rules, next);
+  }
+  return next;
+}
+
+bool fits(const LearnedLights& v, const LightTree& tree) {
+  for (const LightCut& c : v.cuts) {
+    uint32_t next = 0;
+    for (uint32_t i = c.first; i < c.first + c.count; ++i) {
+      if (v.entries[i].node >= tree.nodes.size()) return false;
+      const LightNode& n = tree.nodes[v.entries[i].node];
+      if (n.first != next || v.entries[i].first != next) return false;
+      next = n.last;
+    }
+    if (next != tree.pieces.size()) return false;
+  }
+  return true;
+}
+
+size_t bytes(const LearnedLights& v) {
+  return v.cuts.size() * sizeof(LightCut) + v.entries.size() * (sizeof(LightEntry) + sizeof(LightEvidence));
+}
+
+}  // namespace ajar

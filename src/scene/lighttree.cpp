@@ -1,0 +1,272 @@
+#include "ajar/scene/lighttree.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lightpieces.h"
+
+namespace ajar {
+namespace {
+
+// Measure of the directions that a cone of normals and what goes out around them covers (Conty Estevez and Kulla 2018,
+// equation 1).
+double solid_measure(const LightBounds& b) {
+  const double spread = std::acos(double(b.cos_spread)), reach = std::acos(double(b.cos_reach));
+  const double all = std::min(spread + reach, std::numbers::pi);
+  return 2 * std::numbers::pi * (1 - std::cos(spread)) +
+         std::numbers::pi / 2 * (2 * all * std::sin(spread) - std::cos(spread - 2 * all) -
+                                 2 * spread * std::sin(spread) + std::cos(spread));
+}
+
+double surface(const LightBounds& b) {
+  const glm::dvec3 d = glm::max(glm::dvec3(b.high) - glm::dvec3(b.low), glm::dvec3(0));
+  return d.x * d.y + d.y * d.z + d.z * d.x + 1e-9 * glm::dot(d, d);
+}
+
+double cost(const LightBounds& b) { return b.weight > 0 ? b.weight * surface(b) * solid_measure(b) : 0; }
+
+struct Builder {
+  LightTree& tree;
+  std::vector<BoundedPiece>& pieces;
+
+  Vec3 middle(size_t i) const { return 0.5f * (pieces[i].bounds.low + pieces[i].bounds.high); }
+};
+
+constexpr int bins = 16;
+
+// Where to divide a range: by the surface and orientation measure over bins along its longest axis; the middle where
+// that does not divide it.
+size_t divide(Builder& b, size_t from, size_t to) {
+  Vec3 low(infinity), high(-infinity);
+  for (size_t i = from; i < to; ++i) low = glm::min(low, b.middle(i)), high = glm::max(high, b.middle(i));
+  const Vec3 size = high - low;
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const auto half = [&] {
+    const auto at = [&](size_t i) { return b.pieces.begin() + ptrdiff_t(i); };
+    const size_t middle = (from + to) / 2;
+    std::nth_element(at(from), at(middle), at(to), [&](const BoundedPiece& p, const BoundedPiece& q) {
+      const float x = p.bounds.low[axis] + p.bounds.high[axis], y = q.bounds.low[axis] + q.bounds.high[axis];
+      return x != y ? x < y
+                    : p.piece.light != q.piece.light ? p.piece.light < q.piece.light : p.piece.part < q.piece.part;
+    });
+    return middle;
+  };
+  if (!(size[axis] > 0)) return (from + to) / 2;
+  const auto bin = [&](size_t i) {
+    return std::clamp(int((b.middle(i)[axis] - low[axis]) / size[axis] * bins), 0, bins - 1);
+  };
+  LightBounds of[bins], below, above[bins];
+  for (size_t i = from; i < to; ++i) {
+    LightBounds& in = of[bin(i)];
+    in = join(in, b.pieces[i].bounds);
+  }
+  for (int k = bins - 1; k > 0; --k) above[k - 1] = join(of[k], above[k]);
+  int best = -1;
+  double least = infinity;
+  for (int k = 0; k + 1 < bins; ++k) {
+    below = join(below, of[k]);
+    const double c = cost(below) + cost(above[k]);
+    if (below.weight > 0 && above[k].weight > 0 && c < least) least = c, best = k;
+  }
+  if (best < 0) return half();
+  const auto middle = std::stable_partition(b.pieces.begin() + ptrdiff_t(from), b.pieces.begin() + ptrdiff_t(to),
+                                            [&](const BoundedPiece& p) {
+                                              const float m = 0.5f * (p.bounds.low[axis] + p.bounds.high[axis]);
+                                              return std::clamp(int((m - low[axis]) / size[axis] * bins), 0,
+                                                                bins - 1) <= best;
+                                            });
+  const size_t at = size_t(middle - b.pieces.begin());
+  return at > from && at < to ? at : half();
+}
+
+// Cosine of the angle a - b, at least 0; both in [0, pi].
+float cos_of_difference(float sin_a, float cos_a, float sin_b, float cos_b) {
+  return cos_a > cos_b ? 1 : cos_a * cos_b + sin_a * sin_b;
+}
+float sin_of(float cos) { return safe_sqrt(1 - cos * cos); }
+
+void set_node(const LightBounds& b, bool infinite, LightNode& n) {
+  n.infinite = infinite;
+  n.axis = b.axis, n.cos_spread = b.cos_spread, n.sin_spread = sin_of(b.cos_spread), n.cos_reach = b.cos_reach;
+  n.weight = float(std::min(b.weight, 1e38));
+  n.center = 0.5f * b.low + 0.5f * b.high;
+  n.radius = infinite ? 0 : 0.5f * std::sqrt(length2(b.high - b.low)) * 1.0001f + 1e-6f * max_abs(n.center);
+}
+
+LightBounds build(Builder& b, uint32_t node, size_t from, size_t to, int depth) {
+  b.tree.nodes[node].first = uint32_t(from), b.tree.nodes[node].last = uint32_t(to);
+  LightBounds bounds = b.pieces[from].bounds;
+  if (to - from > 1) {
+    const size_t middle = depth < 64 ? divide(b, from, to) : (from + to) / 2;
+    const uint32_t left = uint32_t(b.tree.nodes.size());
+    b.tree.nodes.resize(left + 2);
+    b.tree.nodes[node].left = left;
+    const LightBounds first = build(b, left, from, middle, depth + 1);
+    bounds = join(first, build(b, left + 1, middle, to, depth + 1));
+  }
+  set_node(bounds, b.pieces[from].infinite, b.tree.nodes[node]);
+  return bounds;
+}
+
+// The nodes that hold the infinite pieces between them, divided by power until there are enough.
+void set_regions(LightTree& t, uint32_t root) {
+  t.regions = {root};
+  while (t.regions.size() < most_regions_of_sky) {
+    size_t worst = t.regions.size();
+    double most = 0;
+    for (size_t i = 0; i < t.regions.size(); ++i) {
+      const LightNode& n = t.nodes[t.regions[i]];
+      const double want = std::sqrt(power_of(t, n.first, n.last) * (1 - double(n.cos_spread)));
+      if (n.left != 0 && want > most) most = want, worst = i;
+    }
+    if (worst == t.regions.size()) break;
+    const uint32_t left = t.nodes[t.regions[worst]].left;
+    t.regions[worst] = left;
+    t.regions.push_back(left + 1);
+  }
+  for (uint32_t r = 0; r < t.regions.size(); ++r)
+    for (uint32_t i = t.nodes[t.regions[r]].first; i < t.nodes[t.regions[r]].last; ++i) t.region[i] = r;
+}
+
+// Probability of the left child; negative where neither can be.
+float left_share(const LightTree& tree, const LightNode& n, const Receiver& at) {
+  const float x = importance(tree, n.left, at), y = importance(tree, n.left + 1, at);
+  const float sum = x + y;
+  if (!(sum > 0)) return -1;
+  return sum < infinity ? x / sum : 0.5f * x / (0.5f * x + 0.5f * y);
+}
+
+}  // namespace
+
+float importance(const LightTree& tree, uint32_t node, const Receiver& at) {
+  const LightNode& n = tree.nodes[node];
+  if (tree.choice == LightChoice::uniform || tree.choice == LightChoice::power) return n.weight;
+  const bool faces = at.n != Vec3(0);
+  if (n.infinite) {
+    if (!faces) return n.weight * tree.infinity_scale;
+    const float c = glm::dot(at.n, n.axis);
+    return n.weight * tree.infinity_scale *
+           std::max(cos_of_difference(sin_of(c), c, n.sin_spread, n.cos_spread) + 1e-4f, 0.0f);
+  }
+  const Vec3 between = n.center - at.p;
+  const float d2 = length2(between), r2 = n.radius * n.radius;
+  const float nearest = std::max(d2, r2);
+  if (!(nearest > 0)) return n.weight;
+  if (d2 <= r2 * 1.0001f) return n.weight / nearest;
+  const Vec3 w = between / std::sqrt(d2);
+  const float sin_seen = std::sqrt(std::min(r2 / d2 * 1.001f + 1e-7f, 1.0f)), cos_seen = sin_of(sin_seen);
+  float received = 1;
+  if (faces) {
+    const float c = glm::dot(at.n, w);
+    received = cos_of_difference(sin_of(c), c, sin_seen, cos_seen);
+    if (!(received > 0)) return 0;
+  }
+  // From the cone of normals to the direction of the receiver.
+  const float c = -glm::dot(n.axis, w), out = cos_of_difference(sin_of(c), c, n.sin_spread, n.cos_spread);
+  const float sent = cos_of_difference(sin_of(out), out, sin_seen, cos_seen);
+  if (!(sent > n.cos_reach - 1e-4f)) return 0;
+  return n.weight * received * std::max(sent, 1e-3f) / nearest;
+}
+
+LightTree make_light_tree(const Scene& scene, LightChoice choice) {
+  LightTree t;
+  t.choice = choice;
+  // Lamps send watts / pi to the steradian where they shine most; from infinity, watts are spread over the scene's disk.
+  t.infinity_scale = float(1 / (double(scene.radius) * double(scene.radius)));
+  make_tilings(scene, t);
+  std::vector<BoundedPiece> pieces = light_pieces(scene, t);
+  t.first_piece.assign(scene.lights.size() + 1, 0);
+  for (const BoundedPiece& p : pieces) ++t.first_piece[p.piece.light + 1];
+  for (size_t i = 0; i < scene.lights.size(); ++i) t.first_piece[i + 1] += t.first_piece[i];
+  t.place.assign(pieces.size(), none);
+  std::erase_if(pieces, [](const BoundedPiece& p) { return !(p.bounds.weight > 0); });
+  t.power_before = {0};
+  if (pieces.empty()) return t;
+  const auto finite = std::stable_partition(pieces.begin(), pieces.end(), [](auto& p) { return !p.infinite; });
+  const size_t lamps = size_t(finite - pieces.begin());
+  t.nodes.reserve(2 * pieces.size());
+  t.nodes.resize(1);
+  t.region.assign(pieces.size(), none);
+  Builder b{t, pieces};
+  uint32_t sky = 0;
+  if (lamps == 0 || lamps == pieces.size()) {
+    build(b, 0, 0, pieces.size(), 0);
+  } else {
+    t.nodes.resize(3);
+    t.nodes[0].left = 1;
+    const LightBounds first = build(b, 1, 0, lamps, 0);
+    set_node(join(first, build(b, sky = 2, lamps, pieces.size(), 0)), false, t.nodes[0]);
+    t.nodes[0].first = 0, t.nodes[0].last = uint32_t(pieces.size());
+  }
+  for (size_t i = 0; i < pieces.size(); ++i) {
+    const LightPiece& p = pieces[i].piece;
+    t.pieces.push_back(p);
+    t.power_before.push_back(t.power_before.back() + pieces[i].watts);
+    t.place[t.first_piece[p.light] + (p.part == none ? 0 : p.part)] = uint32_t(i);
+  }
+  if (lamps < pieces.size()) set_regions(t, sky);
+  return t;
+}
+
+uint32_t place_of(const LightTree& t, uint32_t light, uint32_t part) {
+  const uint32_t first = t.first_piece[light], count = t.first_piece[light + 1] - first;
+  if (count == 0) return none;
+  return t.place[first + (count > 1 ? part : 0)];
+}
+
+size_t bytes(const LightTree& t) {
+  size_t sum = t.nodes.size() * sizeof(LightNode) + t.pieces.size() * sizeof(LightPiece) +
+               t.power_before.size() * sizeof(double) +
+               4 * (t.first_piece.size() + t.place.size() + t.tiling.size() + t.region.size() + t.regions.size());
+  for (const Tiling& x : t.tilings) {
+    sum += x.cuts.size() * sizeof(Tiling::Cut) + x.tiles.size() * sizeof(Tile);
+    for (const Tile& tile : x.tiles) sum += tile.rows.cdf.size() * sizeof(float);
+  }
+  return sum;
+}
+
+bool choose(const LightTree& tree, uint32_t node, const Receiver& at, float& u, uint32_t& place, float& pdf) {
+  pdf = 1;
+  for (;;) {
+    const LightNode& n = tree.nodes[node];
+    if (n.left == 0) {
+      place = n.first;
+      return true;
+    }
+    const float left = left_share(tree, n, at);
+    if (left < 0) return false;
+    if (u < left) {
+      node = n.left, pdf *= left;
+      u = std::min(u / left, one_minus_epsilon);
+    } else {
+      node = n.left + 1, pdf *= 1 - left;
+      u = left < 1 ? std::min((u - left) / (1 - left), one_minus_epsilon) : u;
+    }
+    if (!(pdf > 0)) return false;
+  }
+}
+
+float choice_pdf(const LightTree& tree, uint32_t node, const Receiver& at, uint32_t place) {
+  float pdf = 1;
+  while (tree.nodes[node].left != 0) {
+    const LightNode& n = tree.nodes[node];
+    const float left = left_share(tree, n, at);
+    if (left < 0) return 0;
+    const bool right = place >= tree.nodes[n.left].last;
+    pdf *= right ? 1 - left : left;
+    node = n.left + (right ? 1 : 0);
+  }
+  return pdf;
+}
+
+uint32_t choose_by_power(const LightTree& t, uint32_t first, uint32_t last, float& u) {
+  const double low = t.power_before[first], high = t.power_before[last], at = low + double(u) * (high - low);
+  const auto begin = t.power_before.begin();
+  const auto found = std::upper_bound(begin + first + 1, begin + last, at);
+  const uint32_t i = std::min(uint32_t(found - begin) - 1, last - 1);
+  const double width = t.power_before[i + 1] - t.power_before[i];
+  u = width > 0 ? std::clamp(float((at - t.power_before[i]) / width), 0.0f, one_minus_epsilon) : u;
+  return i;
+}
+
+}  // namespace ajar

@@ -1,0 +1,167 @@
+// Learned choice of lights (V), frozen mid-training: it draws what it says, its shares add up, rays become rare where
+// nothing is seen, and starts of light subpaths follow their densities on the disk across the scene.
+#include <gtest/gtest.h>
+
+#include "kit/chisquare.h"
+#include "kit/stage.h"
+#include "train.h"
+
+namespace ajar {
+namespace {
+
+struct Lit {
+  Scene scene;
+  Accel accel;
+  Fields fields;
+  explicit Lit(Scene s, int lessons = 5, int pairs = 2000)
+      : scene(std::move(s)), accel(scene), fields(train(scene, accel, lessons, pairs)) {}
+};
+
+// Half of the lamps are behind a wall.
+Scene divided_room() {
+  Scene scene = many_lights(24, 3, 24);
+  add_quad(scene, {0.1f, -1, -1}, {0, 0, 2}, {0, 2, 0}, scene.shapes[0].material);
+  finish(scene);
+  return scene;
+}
+
+// Guides at camera vertices.
+template <class F>
+void at_vertices(const Lit& t, int paths, const F& f) {
+  WalkOptions options;
+  options.fields = &t.fields;
+  Subpath path;
+  for (int i = 0; i < paths; ++i) {
+    trace_subpath(t.scene, t.accel, options, Side::camera, uint64_t(i), 99, 4, path);
+    for (int k = 1; k < path.n; ++k)
+      if (connectable(path[k].guide)) f(path[k]);
+  }
+}
+
+TEST(LearnedLights, ChoiceAddsUpAndDrawsWhatItSays) {
+  for (const int lessons : {2, 6}) {
+    const Lit t(divided_room(), lessons, 4000);
+    ASSERT_TRUE(fits(t.fields.lights, t.scene.light_tree));
+    const uint32_t n = uint32_t(t.scene.light_tree.pieces.size());
+    int learned = 0, vertices = 0;
+    at_vertices(t, 60, [&](const Vertex& v) {
+      const LightCut* cut = v.guide.cell == none ? nullptr : &t.fields.lights.cuts[v.guide.cell];
+      ++vertices, learned += cut && cut->count > 1;
+      std::vector<double> p(n);
+      double sum = 0;
+      for (uint32_t k = 0; k < n; ++k) sum += p[k] = double(light_pdf(t.scene, v.guide, v.p, k));
+      ASSERT_LT(sum, 1 + 1e-4);
+      if (!(importance(t.scene.light_tree, 0, {v.p, v.guide.frame.n}) > 0) || sum == 0) return;  // above all lamps
+      ASSERT_GT(sum, 0.5 * double(cut ? cut->asks : 1));
+      constexpr int draws = 2000;
+      std::vector<int> drawn(n);
+      for (int i = 0; i < draws; ++i) {
+        uint32_t place;
+        float pdf;
+        if (!choose_light(t.scene, v.guide, v.p, (float(i) + 0.5f) / draws, place, pdf)) continue;
+        ASSERT_NEAR(double(pdf) / p[place], 1, 1e-3);
+        ++drawn[place];
+      }
+      for (uint32_t k = 0; k < n; ++k) ASSERT_NEAR(drawn[k], draws * p[k], 3 + 0.002 * draws * p[k]);
+    });
+    EXPECT_TRUE(lessons == 2 || learned > vertices / 5) << "hardly learned: the test means little";
+  }
+}
+
+// Cells in one half give the lamps of the other half less than the tree would.
+TEST(LearnedLights, LampsBehindAWallAreRare) {
+  const Lit t(divided_room(), 8, 8000);
+  double learned = 0, bare = 0;
+  at_vertices(t, 400, [&](const Vertex& v) {
+    if (v.guide.cell == none) return;
+    const LightCut& cut = t.fields.lights.cuts[v.guide.cell];
+    float hits = 0;
+    for (uint32_t i = 0; i < cut.count; ++i) hits += t.fields.lights.evidence[cut.first + i].hits;
+    if (cut.count < 2 || hits < 30) return;  // it cannot know
+    const Receiver at{v.p, v.guide.frame.n};
+    for (uint32_t k = 0; k < t.scene.light_tree.pieces.size(); ++k) {
+      const Light& light = t.scene.lights[t.scene.light_tree.pieces[k].light];
+      const float x = t.scene.meshes[t.scene.shapes[light.shape].mesh].positions[0].x;
+      if ((x < 0.1f) == (v.p.x < 0.1f)) continue;
+      learned += double(light_pdf(t.scene, v.guide, v.p, k));
+      bare += double(choice_pdf(t.scene.light_tree, 0, at, k));
+    }
+  });
+  EXPECT_GT(bare, 5);
+  EXPECT_LT(learned, 0.8 * bare);
+}
+
+// Where next-event rays never come through they become rare, with one light too, and never impossible.
+TEST(LearnedLights, DarkCellsAskRarely) {
+  Fields fields;
+  const Scene scene = two_rooms(0, 18);
+  LearnedLights v;
+  add_cut(v, none), add_cut(v, none), add_cut(v, none);
+  for (int lesson = 0; lesson < 6; ++lesson) {
+    LightTallies t = start_tallies(v);
+    for (int i = 0; i < 400; ++i) {
+      record(v, t, v.cuts[0].first, 0);
+      record(v, t, v.cuts[1].first, i % 20 == 0 ? 1.0f : 0.0f);
+    }
+    LightRules rules;
+    rules.least_asks = 1 / 8.0f;
+    v = learn_lights(scene.light_tree, v, t, rules);
+    ASSERT_TRUE(fits(v, scene.light_tree));
+  }
+  EXPECT_NEAR(v.cuts[0].asks, 1 / 8.0f, 0.02f);
+  EXPECT_EQ(v.cuts[1].asks, 1);
+  EXPECT_EQ(v.cuts[2].asks, 1);
+}
+
+// The order in which threads record does not matter.
+TEST(LearnedLights, SumsDoNotDependOnOrder) {
+  const Scene scene = divided_room();
+  LearnedLights v;
+  add_cut(v, none);
+  LightTallies a = start_tallies(v), b = a;
+  for (int i = 0; i < 100; ++i) {
+    record(v, a, 0, 0.1f * float(i));
+    record(v, b, 0, 0.1f * float(99 - i));
+  }
+  EXPECT_EQ(a.square, b.square);
+  EXPECT_EQ(a.hits, b.hits);
+}
+
+TEST(LearnedLights, StartsFollowTheirDensity) {
+  for (const LightKind kind : {LightKind::sun, LightKind::envmap, LightKind::directional}) {
+    const Lit t(lit_by(kind), 5);
+    const Fields* f = &t.fields;
+    float most = 0;
+    for (const FieldCell& c : f->disk.cells) most = std::max(most, c.mix);
+    EXPECT_GT(most, 0.1f) << "hardly guided";
+    // All of the disk in one direction, by its place in the square.
+    EmissionSample first;
+    ASSERT_TRUE(sample_emission(t.scene, f, 0.4f, {0.4f, 0.7f}, {0.3f, 0.6f}, first));
+    const Frame frame = make_frame(first.direction);
+    kit::ChiOptions o;
+    o.rows = o.columns = 12, o.samples = 60'000;
+    int off = 0;
+    const auto r = kit::chi_square_square(
+        [&](const Vec2& u) -> std::optional<Vec2> {
+          EmissionSample e;
+          if (!sample_emission(t.scene, f, 0.4f, u, {0.3f, 0.6f}, e)) return std::nullopt;
+          const EmissionPdf p = pdf_emission(t.scene, f, e.point, e.direction);
+          off += std::abs(p.position / e.pdf_position - 1) > 1e-2f;
+          const Vec3 at = (e.point.p - t.scene.center) / t.scene.radius;
+          return Vec2(glm::dot(frame.s, at), glm::dot(frame.t, at)) * 0.499f + 0.5f;
+        },
+        [&](const Vec2& at) -> double {
+          const Vec2 on = (at - 0.5f) / 0.499f;
+          if (glm::dot(on, on) >= 1) return 0;
+          LightPoint point = first.point;
+          point.p = t.scene.center + t.scene.radius * (frame.s * on.x + frame.t * on.y);
+          return double(pdf_emission(t.scene, f, point, first.direction).position) * sqr(t.scene.radius / 0.499f);
+        },
+        o);
+    EXPECT_TRUE(r.ok) << int(kind) << ": " << r.message;
+    EXPECT_LE(off, o.samples / 100);
+  }
+}
+
+}  // namespace
+}  // namespace ajar
