@@ -117,6 +117,10 @@ std::vector<std::string> split(const std::string& list) {
   return out;
 }
 
+std::string light_choice_of(const Arguments& a, const std::string& integrator) {
+  return !a.light_choice.empty() ? a.light_choice : is_guided(integrator) ? "learned" : "tree";
+}
+
 RenderOptions render_options(const Arguments& a, Scene& scene, bool planned) {
   RenderOptions o;
   const auto known = integrator_names();
@@ -258,6 +262,8 @@ void hold_against(const Arguments& a, const Scene& scene, const Accel& accel, Ru
 void plan_run(const Arguments& a, Scene& scene, const Accel& accel, Run& run) {
   run.plan = make_plan(scene, accel, run.options, [](const RenderState&) { return !stop_asked(); });
   run.options.integrator = run.plan.integrator;
+  run.options.learn_lights &= !is_guided(run.plan.integrator);
+  run.light_choice = light_choice_of(a, run.options.integrator);
   if (!a.quiet) fmt::print(stderr, "ajar: note: {} is used; ajar plan says why\n", run.plan.integrator);
   if (!is_guided(run.plan.integrator) && !a.save_fields.empty())
     fmt::print(stderr, "ajar: note: nothing is learned, {} is not written\n", a.save_fields);

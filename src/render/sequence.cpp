@@ -38,7 +38,9 @@ std::optional<Fields> teach(const Scene& scene, const Accel& accel, const Render
   RenderState state = start_render(scene, teaching);
   if (before) {
     const LearnOptions learning = learn_options(teaching);
-    go_on_from({doubt(before->fields, moved, sequence.doubt, learning), {}, 0}, learning, state.learning, state.film);
+    StoredFields carried{doubt(before->fields, moved, sequence.doubt, learning), {}, 0};
+    fit_lights(scene.light_tree, learning, carried.fields);
+    go_on_from(std::move(carried), learning, state.learning, state.film);
     teaching.learn.forget = sequence.forget;
     if (!give_lessons(scene, accel, teaching, 1, sequence.teach, state, monitor)) return {};
     return std::move(state.learning.fields);
