@@ -32,6 +32,7 @@ struct Arguments {
   int spp = 0, max_depth = std::numeric_limits<int>::min(), threads = 0, roulette_depth = 5;
   uint64_t seed = 0;
   int train = 0;
+  float merge_radius = 2, merge_inner = 1;
   bool no_next_event = false, png = false, half = false, quiet = false, lenient = false;
 };
 
@@ -141,6 +142,8 @@ RenderOptions render_options(const Arguments& a, Scene& scene) {
   o.sampler = a.sampler == "independent" ? SamplerKind::independent : SamplerKind::sobol;
   o.techniques = !a.techniques.empty();
   o.next_event = !a.no_next_event;
+  o.merge_radius = a.merge_radius;
+  o.merge_inner = a.merge_inner;
   check_next_event(o, scene);
   o.learn = learn_options(a, o.integrator);
   if (!a.versus.empty()) check_versus(a.versus, o.integrator);
@@ -346,6 +349,8 @@ void add_render(CLI::App& app) {
       ->check(CLI::IsMember({"recent", "visits"}));
   c->add_option("--train", a->train, "passes that train the fields and are dropped; after them the fields are frozen")
       ->check(CLI::Range(2, 1 << 20));
+  c->add_option("--merge-radius", a->merge_radius, "of vcm, guided-vcm and photon in the first pass, in pixels");
+  c->add_option("--merge-inner", a->merge_inner, "");
   c->add_flag("--no-next-event", a->no_next_event, "lights are found by hitting them alone: path and guided-path");
   c->add_option("--save-fields", a->save_fields, "file to save the learned fields to");
   c->add_option("--load-fields", a->load_fields, "fields to start from, saved from a render of the same scene");

@@ -16,8 +16,13 @@ double share_of_last(const WalkOptions& options, const Subpath& subpath, const W
 double sum_of_last(const WalkOptions& options, const Subpath& subpath, const Walk& walk) {
   const Vertex& last = subpath[subpath.n - 1];
   if (subpath.n == 1) return last.sum;
+  double share = share_of_last(options, subpath, walk);
+  if (last.merge > 0 && !last.delta) {
+    const bool first = walk.side == Side::camera && subpath.n == 2;
+    share += merge_at(options.heuristic, last.own, last.merge * (first ? 1 : options.merging.inner));  // (R4)
+  }
   const double r = raise(options.heuristic, ratio(walk.other_before, subpath[subpath.n - 2].own));
-  return extend(share_of_last(options, subpath, walk), r, last.sum);  // (R2)
+  return extend(share, r, last.sum);  // (R2)
 }
 
 }  // namespace
@@ -95,6 +100,7 @@ bool step(const Scene& scene, const Accel& accel, const WalkOptions& options, Su
   v.own = walk.pdf * cosine / v.distance2;
   v.back = walk.planar ? 1 : (before.ng == Vec3(0) ? 1 : std::abs(glm::dot(before.ng, walk.d))) / v.distance2;
   v.sum = walk.sum;
+  v.merge = options.merging.paths > 0 ? pi * sqr(merge_radius(options.merging, v.p)) * float(options.merging.paths) : 0;
   v.delta = false, v.infinite = false;
   v.shines = 0, v.received = 0;
   v.shape = hit.shape, v.instance = hit.instance;

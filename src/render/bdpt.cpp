@@ -17,6 +17,7 @@ struct Work {
 
 float weigh(const Work& work, Candidate& c) {
   c.shares.inner = work.job.walk.inner_share;
+  c.shares.merge_inner = work.job.walk.merging.inner;
   if (!work.job.next_event) c.shares.light_first = 0;
   return float(weight(work.job.walk.heuristic, c));
 }
@@ -122,7 +123,7 @@ void join_next_event(Work& work) {
 // s >= 2: one of all light vertices of the chunk.
 void join_stored(Work& work) {
   const Job& job = work.job;
-  const LightStore& store = work.scratch.store;
+  const LightStore& store = work.scratch.halves->store;
   const Subpath& camera = work.scratch.camera;
   const Vertex& v = camera[camera.n - 1];
   StoreChoice choice;
@@ -138,6 +139,67 @@ void join_stored(Work& work) {
   charge_join(work.scratch, at.s, camera.n);
 }
 
+// Whether what arrives at the photon would arrive at the camera vertex: surfaces that face other ways, and those that
+// lie in front of it or behind, are others.
+bool same_surface(const Vertex& v, const Vec3& ng, const Photon& p, float radius) {
+  const float facing = glm::dot(ng, p.n);
+  if ((v.guide.bsdf.opaque ? facing : std::abs(facing)) < 0.9f) return false;
+  return std::abs(glm::dot(ng, p.p - v.p)) < 0.2f * radius;
+}
+
+// Sums over the merges at one camera vertex, by s.
+struct Merged {
+  std::array<Rgb, Ledger::most + 1> raw{}, weighted{};
+};
+
+void add_merged(Work& work, const Merged& sums, int t, const Rgb& factor) {
+  Sample& sample = work.sample;
+  for (int s = 2; s <= Ledger::most; ++s) {
+    const Rgb found = sums.weighted[size_t(s)] * factor;
+    if (is_black(found) || !accept(found, sample, work.scratch)) continue;
+    sample.value += found;
+    gain(work.scratch.ledger->merge_at(s, t), found * sample.filter);
+    if (work.scratch.strategies)
+      work.scratch.strategies->push_back({-s, t, Vec2(sample.x, sample.y),
+                                          sums.raw[size_t(s)] * factor * sample.filter, found * sample.filter});
+  }
+}
+
+// s >= 2: all light vertices near the camera vertex.
+void join_merged(Work& work) {
+  const Job& job = work.job;
+  const Heuristic h = job.walk.heuristic;
+  const Subpath& camera = work.scratch.camera;
+  const int t = camera.n;
+  const Vertex& v = camera[t - 1];
+  const Vertex& before = camera[t - 2];
+  const double merge = v.merge * (t == 2 ? 1 : job.walk.merging.inner);
+  if (!(merge > 0)) return;
+  Shares shares;
+  shares.camera_first = job.walk.light_paths, shares.inner = job.walk.inner_share;
+  const MergeSide side =
+      merge_side(h, {t, v.own, 0, before.own, 0, before.delta, v.sum, v.merge}, v.back, shares, Side::camera);
+  const float radius = merge_radius(job.walk.merging, v.p);
+  const Vec3 ng = v.guide.ng;
+  const int most = job.walk.max_edges + 2 - t;
+  Merged sums;
+  for_each_near(*job.photons, v.p, radius, [&](const Photon& p) {
+    if (p.s > most || !same_surface(v, ng, p, radius)) return;
+    const float cosine = std::abs(glm::dot(ng, p.wi));
+    if (!(cosine > 1e-6f)) return;
+    const GuideEval e = evaluate(v.guide, p.wi, Mode::radiance);
+    if (is_black(e.f_cos)) return;
+    const double w = merge_weight(h, merge, {p.fixed, p.slope}, e.pdf, side, e.pdf_reverse);
+    ++work.scratch.ledger->merge_at(p.s, t).joins;
+    const size_t row = size_t(std::min(p.s, Ledger::most));
+    const Rgb found = e.f_cos * p.beta / cosine;
+    sums.raw[row] += found;
+    sums.weighted[row] += found * float(w);
+  });
+  add_merged(work, sums, t, v.beta / v.merge);
+  charge(work.scratch, work.scratch.ledger->merge_at(0, t).ticks);
+}
+
 // All joins at the camera subpath's last vertex.
 void join_all(Work& work, const Surface& surface) {
   const Job& job = work.job;
@@ -147,6 +209,7 @@ void join_all(Work& work, const Surface& surface) {
   join_surface(work, surface);
   if (t > job.walk.max_edges || !connectable(camera[t - 1].guide)) return;
   join_next_event(work);
+  if (job.photons) join_merged(work);
   if (job.stored) return join_stored(work);
   const int most = std::min(light.n, job.walk.max_edges + 1 - t);
   Candidate c;
@@ -183,7 +246,9 @@ void trace_light_half(const Job& job, Sample& sample, Scratch& scratch) {
   Work work{job, sample, scratch};
   scratch.light.n = 0;
   trace_light_subpath(work);
-  add(scratch.store, scratch.light, work.light_share);
+  add(scratch.halves->store, scratch.light, work.light_share);
+  if (job.walk.merging.paths > 0)
+    add_photons(scratch.halves->photons, scratch.light, job.walk.heuristic, job.walk.inner_share, work.light_share);
   charge(scratch, scratch.ledger->light_ticks);
   if (!sample.teaches) return;
   record_subpath(*job.walk.fields, *job.training, scratch.sightings, scratch.light, Side::light);

@@ -4,6 +4,7 @@
 
 #include "ajar/film/pyramid.h"
 #include "ajar/join/connect.h"
+#include "ajar/join/photons.h"
 #include "ajar/join/store.h"
 #include "ajar/path/record.h"
 #include "ajar/render/learning.h"
@@ -20,7 +21,8 @@ struct Job {
   uint64_t seed = 0;
   bool techniques = false;
   bool next_event = true;
-  bool stored = false;  ///< light subpaths were traced before, and are in the store
+  bool stored = false;                 ///< light subpaths were traced before, and are in the store
+  const PhotonMap* photons = nullptr;  ///< light vertices to merge with; null: none
   const Learning* learning = nullptr;  ///< null: unguided
   Training* training = nullptr;
 };
@@ -38,15 +40,22 @@ struct Sample {
   Rgb value{0};          ///< radiance found by the camera path, unfiltered
 };
 
-/// Storage of one thread at work on one chunk; kept from chunk to chunk. Threads share no cache line.
-struct alignas(64) Scratch {
-  Subpath camera, light;
-  LightStore store;  ///< of the chunk
+/// What the light halves of a chunk's samples leave for the camera halves.
+struct Halves {
   struct Part {
     Sample sample;
     bool splat = false;  ///< its light subpath brought something
   };
-  std::vector<Part> samples;  ///< of the chunk
+  std::vector<Part> samples;
+  LightStore store;
+  Photons photons;
+};
+
+/// Storage of one thread at work on one chunk; kept from chunk to chunk. Threads share no cache line.
+struct alignas(64) Scratch {
+  Subpath camera, light;
+  Halves* halves = nullptr;  ///< of the chunk
+  Halves own_halves;         ///< where those of one chunk are enough
   Counters counters;
   Sightings sightings;
   uint64_t rejected = 0;
@@ -65,7 +74,8 @@ using Trace = void (*)(const Job&, Sample&, Scratch&);
 void trace_path(const Job&, Sample&, Scratch&);
 void trace_bdpt(const Job&, Sample&, Scratch&);
 void trace_light(const Job&, Sample&, Scratch&);
-/// The first half of guided-bdpt: the light subpath of one sample, put into the chunk's store. The second is trace_bdpt.
+/// The first half of guided-bdpt: the light subpath of one sample, put into the chunk's store. The second is
+/// trace_bdpt.
 void trace_light_half(const Job&, Sample&, Scratch&);
 
 /// The time since the last charge goes to a part of the ledger.
@@ -84,11 +94,11 @@ inline void charge_join(Scratch& scratch, int s, int t) {
 }
 
 /// Notes what a join adds to its pixel.
-inline void gain(Scratch& scratch, int s, int t, const Rgb& pixel) {
-  StrategyCost& cost = scratch.ledger->at(s, t);
+inline void gain(StrategyCost& cost, const Rgb& pixel) {
   ++cost.visible;
   if (const float energy = luminance(pixel); std::abs(energy) < infinity) cost.energy += double(energy);
 }
+inline void gain(Scratch& scratch, int s, int t, const Rgb& pixel) { gain(scratch.ledger->at(s, t), pixel); }
 
 /// The same of a light path's splat, whose filter's integral is 1. What filters carry over the border of the film, one
 /// way and the other, is taken for equal.

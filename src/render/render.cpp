@@ -18,12 +18,15 @@ struct Integrator {
   Trace trace;
   bool splats;
   bool guided = false;
+  bool merges = false;
 };
 constexpr Integrator integrators[] = {{"path", trace_path, false},
                                       {"bdpt", trace_bdpt, true},
                                       {"light", trace_light, true},
                                       {"guided-path", trace_bdpt, false, true},
-                                      {"guided-bdpt", trace_bdpt, true, true}};
+                                      {"guided-bdpt", trace_bdpt, true, true},
+                                      {"vcm", trace_bdpt, true, false, true},
+                                      {"guided-vcm", trace_bdpt, true, true, true}};
 
 const Integrator& find_integrator(const std::string& name) {
   for (const Integrator& i : integrators)
@@ -42,6 +45,8 @@ struct Batch {
   std::vector<std::vector<Strategy>> strategies;
   std::vector<Ledger> ledgers;
   std::vector<uint64_t> rejected_at;  // path of each chunk's first rejected value
+  std::vector<Halves> halves;         // only where light subpaths of the whole batch are merged
+  PhotonMap photons;
 };
 
 Sample make_sample(const Job& job, const Film& film, int x, int y) {
@@ -59,6 +64,15 @@ Sample make_sample(const Job& job, const Film& film, int x, int y) {
 
 // Not those that are recorded more than others.
 bool is_timed(const Sample& s) { return hash(0x71c5 + s.path, s.pass) % timed_samples == 0; }
+
+// Lends a thread's scratch to a chunk of the batch.
+Scratch& prepare(const Job& job, Batch& batch, uint32_t i, Scratch& scratch) {
+  scratch.splats = &batch.splats[i];
+  scratch.ledger = &batch.ledgers[i];
+  scratch.strategies = job.techniques ? &batch.strategies[i] : nullptr;
+  scratch.halves = batch.halves.empty() ? &scratch.own_halves : &batch.halves[i];
+  return scratch;
+}
 
 // The light half of a sample; whether it brought something.
 bool trace_half(const Job& job, Sample& sample, Scratch& scratch) {
@@ -78,19 +92,46 @@ void trace_pixel(const Job& job, Trace trace, Film& film, Sample& sample, bool s
   film.camera[sample.path] = sample.value * sample.filter;
 }
 
-void trace_chunk(const Job& job, Trace trace, Film& film, uint32_t chunk, Scratch& scratch) {
+// The samples of a chunk and, where light subpaths are stored, their light halves.
+void trace_light_halves(const Job& job, const Film& film, uint32_t chunk, Scratch& scratch) {
   const int x0 = int(chunk) % tiles_x(film) * tile, y0 = int(chunk) / tiles_x(film) * tile;
   const int x1 = std::min(x0 + tile, film.width), y1 = std::min(y0 + tile, film.height);
+  Halves& halves = *scratch.halves;
   scratch.rejected_at = Scratch::no_path;
-  scratch.samples.clear();
+  halves.samples.clear();
   for (int y = y0; y < y1; ++y)
-    for (int x = x0; x < x1; ++x) scratch.samples.push_back({make_sample(job, film, x, y)});
-  clear(scratch.store);
-  if (job.stored) {
-    for (auto& [sample, splat] : scratch.samples) splat = trace_half(job, sample, scratch);
-    finish(scratch.store, job.walk.inner_share);
-  }
-  for (auto& [sample, splat] : scratch.samples) trace_pixel(job, trace, film, sample, splat, scratch);
+    for (int x = x0; x < x1; ++x) halves.samples.push_back({make_sample(job, film, x, y)});
+  clear(halves.store);
+  halves.photons.clear();
+  if (!job.stored) return;
+  for (auto& [sample, splat] : halves.samples) splat = trace_half(job, sample, scratch);
+  finish(halves.store, job.walk.inner_share);
+}
+
+void trace_camera_halves(const Job& job, Trace trace, Film& film, Scratch& scratch) {
+  for (auto& [sample, splat] : scratch.halves->samples) trace_pixel(job, trace, film, sample, splat, scratch);
+}
+
+// Light halves of all chunks, then what is merged with them: their number must not depend on threads or clocks.
+void trace_merged(Job& job, Trace trace, Film& film, uint32_t from, Batch& batch, std::vector<Scratch>& scratches) {
+  const uint32_t count = uint32_t(batch.splats.size());
+  const auto at_work = [&](uint32_t i) -> Scratch& { return prepare(job, batch, i, scratches[thread_slot()]); };
+  batch.halves.resize(count);
+  parallel_for(count, [&](uint32_t i) {
+    Scratch& scratch = at_work(i);
+    trace_light_halves(job, film, from + i, scratch);
+    batch.rejected_at[i] = scratch.rejected_at;
+  });
+  std::vector<const Photons*> lists;
+  for (const Halves& h : batch.halves) lists.push_back(&h.photons);
+  fill(batch.photons, job.walk.merging, lists);
+  job.photons = &batch.photons;
+  parallel_for(count, [&](uint32_t i) {
+    Scratch& scratch = at_work(i);
+    scratch.rejected_at = batch.rejected_at[i];
+    trace_camera_halves(job, trace, film, scratch);
+    batch.rejected_at[i] = scratch.rejected_at;
+  });
 }
 
 Job make_job(const Scene& scene, const Accel& accel, const RenderOptions& options, const Film& film) {
@@ -124,6 +165,42 @@ uint32_t affordable_chunks(const RenderOptions& options, const RenderState& stat
   limit(options.seconds, state.stats.seconds);
   limit(options.cpu_seconds, state.stats.cpu_seconds);
   return std::max(uint32_t(std::max(affordable, 0.0)), least_chunks);
+}
+
+// Batches of which a pass is made when light subpaths are merged: as few as the bound allows, and alike.
+uint32_t equal_chunks(uint32_t all) {
+  const uint32_t batches = (all + batch_chunks - 1) / batch_chunks;
+  return (all + batches - 1) / batches;
+}
+
+// Light subpaths of chunks from .. from + count - 1: one for each pixel.
+double pixels_of(const Film& film, uint32_t from, uint32_t count) {
+  double sum = 0;
+  for (uint32_t chunk = from; chunk < from + count; ++chunk) {
+    const int x0 = int(chunk) % tiles_x(film) * tile, y0 = int(chunk) / tiles_x(film) * tile;
+    sum += double(std::min(tile, film.width - x0)) * std::min(tile, film.height - y0);
+  }
+  return sum;
+}
+
+// Radii of the pass that the film is at: areas shrink with the cube root of the passes, so that bias and variance both
+// vanish (Knaus and Zwicker 2011, alpha = 2/3).
+Merging merging_of(const Scene& scene, const RenderOptions& options, const Film& film, uint32_t chunks) {
+  const Camera& camera = scene.camera;
+  const uint32_t count = std::min(chunks, chunk_count(film) - film.chunks);
+  const float pixels = options.merge_radius * std::pow(float(film.passes + 1), -1.0f / 6);
+  Merging m;
+  m.paths = pixels_of(film, film.chunks, count);
+  m.inner = options.merge_inner;
+  const CameraRay ray = generate(camera, Vec2(camera.width, camera.height) * 0.5f, Vec2(0.5f));
+  m.eye = ray.o;
+  const float pixel = 1 / std::sqrt(raster_factor(camera, ray.o, ray.o + ray.d));
+  m.most = 0.02f * scene.radius;
+  if (camera.kind == CameraKind::orthographic)
+    m.least = m.most = std::min(pixels * pixel, m.most);
+  else
+    m.per_distance = std::min(pixels * pixel, 0.5f);
+  return m;
 }
 
 void note_rejected(RenderStats& stats, const std::vector<uint64_t>& pixels, const Film& film, uint64_t seed) {
@@ -182,6 +259,8 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   Film& film = state.film;
   RenderStats& stats = state.stats;
   Job job = make_job(scene, accel, options, film);
+  const bool merging = find_integrator(options.integrator).merges && options.merge_radius > 0;
+  job.stored = find_integrator(options.integrator).merges;
   if (find_integrator(options.integrator).guided) {
     job.learning = &state.learning, job.training = &state.learning.training;
     job.walk.fields = &state.learning.fields;
@@ -217,22 +296,26 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
            (options.cpu_seconds > 0 && stats.cpu_seconds >= options.cpu_seconds);
   };
   while (!out_of_budget()) {
-    const uint32_t from = film.chunks, count = std::min({batch_chunks, all - from, affordable_chunks(options, state)});
+    const uint32_t from = film.chunks;
+    job.walk.merging = merging ? merging_of(scene, options, film, equal_chunks(all)) : Merging{};
+    const uint32_t count = merging ? std::min(equal_chunks(all), all - from)
+                                   : std::min({batch_chunks, all - from, affordable_chunks(options, state)});
     batch.splats.resize(count);
     batch.strategies.resize(count);
     batch.ledgers.assign(count, {});
     batch.rejected_at.resize(count);
     threads.run([&] {
-      parallel_for(count, [&](uint32_t i) {
-        Scratch& scratch = scratches[thread_slot()];
-        batch.splats[i].clear();
-        batch.strategies[i].clear();
-        scratch.splats = &batch.splats[i];
-        scratch.ledger = &batch.ledgers[i];
-        scratch.strategies = job.techniques ? &batch.strategies[i] : nullptr;
-        trace_chunk(job, trace, film, from + i, scratch);
-        batch.rejected_at[i] = scratch.rejected_at;
-      });
+      for (uint32_t i = 0; i < count; ++i) batch.splats[i].clear(), batch.strategies[i].clear();
+      if (job.walk.merging.paths > 0) {
+        trace_merged(job, trace, film, from, batch, scratches);
+      } else {
+        parallel_for(count, [&](uint32_t i) {
+          Scratch& scratch = prepare(job, batch, i, scratches[thread_slot()]);
+          trace_light_halves(job, film, from + i, scratch);
+          trace_camera_halves(job, trace, film, scratch);
+          batch.rejected_at[i] = scratch.rejected_at;
+        });
+      }
       if (film.splats) merge(film, batch.splats);
       if (job.techniques) merge(state.pyramid, film, batch.strategies);
       for (const Ledger& ledger : batch.ledgers) stats.ledger += ledger;

@@ -22,6 +22,8 @@ struct RenderOptions {
   Heuristic heuristic = Heuristic::power;
   SamplerKind sampler = SamplerKind::sobol;
   bool next_event = true;   ///< next-event estimation; only integrators without light subpaths can do without
+  float merge_radius = 2;   ///< of vcm, guided-vcm and photon in the first pass [pixels]; 0: nothing is merged
+  float merge_inner = 1;
   LearnOptions learn;       ///< guided integrators only
   bool techniques = false;  ///< keep an image of every (s, t)
 };
