@@ -36,7 +36,7 @@ double mis_weight(Heuristic h, const End& light, const End& camera, const Shares
     const double share = camera.delta_before ? 0 : (camera.n == 2 ? 0.0 : nee);
     fewer_camera = last * extend(share, raise(h, ratio(camera.other_before, camera.own_before)), camera.sum_before);
   } else {
-    fewer_camera = handed_over(h, camera, film, inner, camera.n == 2 ? 1 : shares.merge_inner);
+    fewer_camera = handed_over(h, camera, film, inner, 1);
   }
   return here / (here + fewer_light + fewer_camera);
 }

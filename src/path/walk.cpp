@@ -18,8 +18,8 @@ double sum_of_last(const WalkOptions& options, const Subpath& subpath, const Wal
   if (subpath.n == 1) return last.sum;
   double share = share_of_last(options, subpath, walk);
   if (last.merge > 0 && !last.delta) {
-    const bool first = walk.side == Side::camera && subpath.n == 2;
-    share += merge_at(options.heuristic, last.own, last.merge * (first ? 1 : options.merging.inner));  // (R4)
+    const double part = walk.side == Side::camera ? 1 : options.merging.inner;
+    share += merge_at(options.heuristic, last.own, last.merge * part);  // (R4)
   }
   const double r = raise(options.heuristic, ratio(walk.other_before, subpath[subpath.n - 2].own));
   return extend(share, r, last.sum);  // (R2)
@@ -100,7 +100,11 @@ bool step(const Scene& scene, const Accel& accel, const WalkOptions& options, Su
   v.own = walk.pdf * cosine / v.distance2;
   v.back = walk.planar ? 1 : (before.ng == Vec3(0) ? 1 : std::abs(glm::dot(before.ng, walk.d))) / v.distance2;
   v.sum = walk.sum;
-  v.merge = options.merging.paths > 0 ? pi * sqr(merge_radius(options.merging, v.p)) * float(options.merging.paths) : 0;
+  v.merge = merge_density(options.merging, v.p);
+  if (walk.side == Side::camera && subpath.n > 2) {
+    walk.straight &= before.delta;
+    if (!walk.straight) v.merge *= float(options.merging.inner);
+  }
   v.delta = false, v.infinite = false;
   v.shines = 0, v.received = 0;
   v.shape = hit.shape, v.instance = hit.instance;

@@ -139,12 +139,16 @@ void join_stored(Work& work) {
   charge_join(work.scratch, at.s, camera.n);
 }
 
+// What takes part in a merge: surfaces that face the same way (cosine) and are not far above or below (of the radius).
+constexpr float facing_share = 0.9f, plane_share = 0.2f;
+constexpr int most_darts = 16;
+
 // Whether what arrives at the photon would arrive at the camera vertex: surfaces that face other ways, and those that
 // lie in front of it or behind, are others.
 bool same_surface(const Vertex& v, const Vec3& ng, const Photon& p, float radius) {
   const float facing = glm::dot(ng, p.n);
-  if ((v.guide.bsdf.opaque ? facing : std::abs(facing)) < 0.9f) return false;
-  return std::abs(glm::dot(ng, p.p - v.p)) < 0.2f * radius;
+  if ((v.guide.bsdf.opaque ? facing : std::abs(facing)) < facing_share) return false;
+  return std::abs(glm::dot(ng, p.p - v.p)) < plane_share * radius;
 }
 
 // Sums over the merges at one camera vertex, by s.
@@ -165,6 +169,26 @@ void add_merged(Work& work, const Merged& sums, int t, const Rgb& factor) {
   }
 }
 
+// One over the share of the disc about a vertex that is surface, so that what lies at an edge or in a corner is not
+// taken for dark: the mean number of darts until one hits (Booth 2007).
+float over_coverage(const Work& work, const Vertex& v, float radius) {
+  const Frame frame = make_frame(v.guide.ng);
+  Sampler sampler = make_sampler(SamplerKind::independent, hash(work.job.seed, 0xd15c + uint64_t(work.scratch.camera.n)),
+                                 Side::camera, work.sample.path, work.sample.pass);
+  const float height = plane_share * radius;
+  int darts = 1;
+  for (; darts < most_darts; ++darts) {
+    const Vec2 u = sampler.next2();
+    const float r = radius * std::sqrt(u.x), phi = 2 * pi * u.y;
+    const Vec3 from = v.p + frame.to_world({r * std::cos(phi), r * std::sin(phi), height});
+    Hit hit;
+    if (!work.job.accel->intersect(from, -frame.n, 0, 2 * height, hit)) continue;
+    const Surface at = make_surface(*work.job.scene, hit, from, -frame.n);
+    if (std::abs(glm::dot(at.ng, frame.n)) > facing_share) break;
+  }
+  return float(darts);
+}
+
 // s >= 2: all light vertices near the camera vertex.
 void join_merged(Work& work) {
   const Job& job = work.job;
@@ -173,30 +197,35 @@ void join_merged(Work& work) {
   const int t = camera.n;
   const Vertex& v = camera[t - 1];
   const Vertex& before = camera[t - 2];
-  const double merge = v.merge * (t == 2 ? 1 : job.walk.merging.inner);
-  if (!(merge > 0)) return;
+  if (!(v.merge > 0)) return;
   Shares shares;
   shares.camera_first = job.walk.light_paths, shares.inner = job.walk.inner_share;
   const MergeSide side =
       merge_side(h, {t, v.own, 0, before.own, 0, before.delta, v.sum, v.merge}, v.back, shares, Side::camera);
-  const float radius = merge_radius(job.walk.merging, v.p);
+  const float radius = merge_radius(job.walk.merging, v.p), full = merge_density(job.walk.merging, v.p);
+  const bool inner = v.merge < full;
   const Vec3 ng = v.guide.ng;
   const int most = job.walk.max_edges + 2 - t;
   Merged sums;
-  for_each_near(*job.photons, v.p, radius, [&](const Photon& p) {
+  int found_any = 0;
+  for_each_near(inner ? job.photons[1] : job.photons[0], v.p, radius, [&](const Photon& p) {
     if (p.s > most || !same_surface(v, ng, p, radius)) return;
     const float cosine = std::abs(glm::dot(ng, p.wi));
     if (!(cosine > 1e-6f)) return;
     const GuideEval e = evaluate(v.guide, p.wi, Mode::radiance);
     if (is_black(e.f_cos)) return;
-    const double w = merge_weight(h, merge, {p.fixed, p.slope}, e.pdf, side, e.pdf_reverse);
+    const double w = merge_weight(h, v.merge, {p.fixed, p.slope}, e.pdf, side, e.pdf_reverse);
     ++work.scratch.ledger->merge_at(p.s, t).joins;
     const size_t row = size_t(std::min(p.s, Ledger::most));
     const Rgb found = e.f_cos * p.beta / cosine;
     sums.raw[row] += found;
     sums.weighted[row] += found * float(w);
+    ++found_any;
   });
-  add_merged(work, sums, t, v.beta / v.merge);
+  if (found_any) {
+    const float times = inner ? float(job.inner_step) : 1;
+    add_merged(work, sums, t, v.beta * (times * (job.edges ? over_coverage(work, v, radius) : 1) / full));
+  }
   charge(work.scratch, work.scratch.ledger->merge_at(0, t).ticks);
 }
 
@@ -247,6 +276,8 @@ void trace_light_half(const Job& job, Sample& sample, Scratch& scratch) {
   scratch.light.n = 0;
   trace_light_subpath(work);
   add(scratch.halves->store, scratch.light, work.light_share);
+  if (job.walk.merging.paths > 0 && sample.path % uint64_t(job.inner_step) == sample.pass % uint64_t(job.inner_step))
+    add_photons(scratch.halves->few, scratch.light, job.walk.heuristic, job.walk.inner_share, work.light_share);
   if (job.walk.merging.paths > 0)
     add_photons(scratch.halves->photons, scratch.light, job.walk.heuristic, job.walk.inner_share, work.light_share);
   charge(scratch, scratch.ledger->light_ticks);

@@ -23,6 +23,7 @@ struct Job {
   bool next_event = true;
   bool stored = false;                 ///< light subpaths were traced before, and are in the store
   const PhotonMap* photons = nullptr;  ///< light vertices to merge with; null: none
+  int inner_step = 16; bool edges=true;
   const Learning* learning = nullptr;  ///< null: unguided
   Training* training = nullptr;
 };
@@ -48,7 +49,7 @@ struct Halves {
   };
   std::vector<Part> samples;
   LightStore store;
-  Photons photons;
+  Photons photons, few;
 };
 
 /// Storage of one thread at work on one chunk; kept from chunk to chunk. Threads share no cache line.

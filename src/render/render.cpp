@@ -46,7 +46,7 @@ struct Batch {
   std::vector<Ledger> ledgers;
   std::vector<uint64_t> rejected_at;  // path of each chunk's first rejected value
   std::vector<Halves> halves;         // only where light subpaths of the whole batch are merged
-  PhotonMap photons;
+  PhotonMap photons[2];
 };
 
 Sample make_sample(const Job& job, const Film& film, int x, int y) {
@@ -102,7 +102,7 @@ void trace_light_halves(const Job& job, const Film& film, uint32_t chunk, Scratc
   for (int y = y0; y < y1; ++y)
     for (int x = x0; x < x1; ++x) halves.samples.push_back({make_sample(job, film, x, y)});
   clear(halves.store);
-  halves.photons.clear();
+  halves.photons.clear(), halves.few.clear();
   if (!job.stored) return;
   for (auto& [sample, splat] : halves.samples) splat = trace_half(job, sample, scratch);
   finish(halves.store, job.walk.inner_share);
@@ -124,8 +124,13 @@ void trace_merged(Job& job, Trace trace, Film& film, uint32_t from, Batch& batch
   });
   std::vector<const Photons*> lists;
   for (const Halves& h : batch.halves) lists.push_back(&h.photons);
-  fill(batch.photons, job.walk.merging, lists);
-  job.photons = &batch.photons;
+  fill(batch.photons[0], job.walk.merging, lists);
+  if (job.walk.merging.inner > 0) {
+    std::vector<const Photons*> few;
+    for (const Halves& h : batch.halves) few.push_back(&h.few);
+    fill(batch.photons[1], job.walk.merging, few);
+  }
+  job.photons = batch.photons;
   parallel_for(count, [&](uint32_t i) {
     Scratch& scratch = at_work(i);
     scratch.rejected_at = batch.rejected_at[i];
@@ -146,6 +151,8 @@ Job make_job(const Scene& scene, const Accel& accel, const RenderOptions& option
   job.seed = options.seed;
   job.techniques = options.techniques;
   job.next_event = options.next_event;
+  if (getenv("STEP")) job.inner_step = atoi(getenv("STEP"));
+  if (getenv("EDGES")) job.edges = atoi(getenv("EDGES"));
   return job;
 }
 

@@ -20,7 +20,7 @@ struct Vertex {
   float back = 0;   ///< solid-angle density here of the direction back times this = area density at the vertex before
   double own = 0;   ///< area density of this vertex as its own side generated it (solid angle when infinite)
   double sum = 0;   ///< S of the vertex *before* this one, mis.h (R3)
-  float merge = 0;  ///< pi r^2 N here (walk.h, Merging); 0 where nothing is merged
+  float merge = 0;  ///< merge_density here (walk.h), on the camera's side times what the merge counts for
   bool delta = false;     ///< the subpath went on from here by a delta event
   bool infinite = false;  ///< vertex 0: a direction rather than a place
   float received =

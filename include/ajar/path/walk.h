@@ -32,6 +32,11 @@ inline float merge_radius(const Merging& m, const Vec3& p) {
   return std::clamp(m.per_distance * std::sqrt(length2(p - m.eye)), m.least, m.most);
 }
 
+/// pi r^2 N: what one side's density at a place is multiplied by for a merge there.
+inline float merge_density(const Merging& m, const Vec3& p) {
+  return m.paths > 0 ? pi * sqr(merge_radius(m, p)) * float(m.paths) : 0;
+}
+
 struct WalkOptions {
   int max_edges = 1 << 20;  ///< of a whole path from light to camera
   int roulette_from = 5;    ///< edges that are traced without roulette
@@ -57,6 +62,7 @@ struct Walk {
   double sum = 0;           ///< S of the vertex that the ray leaves (R2); set by step, also when the ray escapes
   double first_share = 1;   ///< v_1 of (R2), not raised
   Rgb survival{1};          ///< throughput since the start, for roulette
+  bool straight = true;     ///< all events so far were delta
   float promise = 0;        ///< what the fields expected the subpath to bring when it began; 0: they do not know
 };
 
