@@ -139,96 +139,6 @@ void join_stored(Work& work) {
   charge_join(work.scratch, at.s, camera.n);
 }
 
-// What takes part in a merge: surfaces that face the same way (cosine) and are not far above or below (of the radius).
-constexpr float facing_share = 0.9f, plane_share = 0.2f;
-constexpr int most_darts = 16;
-
-// Whether what arrives at the photon would arrive at the camera vertex: surfaces that face other ways, and those that
-// lie in front of it or behind, are others.
-bool same_surface(const Vertex& v, const Vec3& ng, const Photon& p, float radius) {
-  const float facing = glm::dot(ng, p.n);
-  if ((v.guide.bsdf.opaque ? facing : std::abs(facing)) < facing_share) return false;
-  return std::abs(glm::dot(ng, p.p - v.p)) < plane_share * radius;
-}
-
-// Sums over the merges at one camera vertex, by s.
-struct Merged {
-  std::array<Rgb, Ledger::most + 1> raw{}, weighted{};
-};
-
-void add_merged(Work& work, const Merged& sums, int t, const Rgb& factor) {
-  Sample& sample = work.sample;
-  for (int s = 2; s <= Ledger::most; ++s) {
-    const Rgb found = sums.weighted[size_t(s)] * factor;
-    if (is_black(found) || !accept(found, sample, work.scratch)) continue;
-    sample.value += found;
-    gain(work.scratch.ledger->merge_at(s, t), found * sample.filter);
-    if (work.scratch.strategies)
-      work.scratch.strategies->push_back({-s, t, Vec2(sample.x, sample.y),
-                                          sums.raw[size_t(s)] * factor * sample.filter, found * sample.filter});
-  }
-}
-
-// One over the share of the disc about a vertex that is surface, so that what lies at an edge or in a corner is not
-// taken for dark: the mean number of darts until one hits (Booth 2007).
-float over_coverage(const Work& work, const Vertex& v, float radius) {
-  const Frame frame = make_frame(v.guide.ng);
-  Sampler sampler = make_sampler(SamplerKind::independent, hash(work.job.seed, 0xd15c + uint64_t(work.scratch.camera.n)),
-                                 Side::camera, work.sample.path, work.sample.pass);
-  const float height = plane_share * radius;
-  int darts = 1;
-  for (; darts < most_darts; ++darts) {
-    const Vec2 u = sampler.next2();
-    const float r = radius * std::sqrt(u.x), phi = 2 * pi * u.y;
-    const Vec3 from = v.p + frame.to_world({r * std::cos(phi), r * std::sin(phi), height});
-    Hit hit;
-    if (!work.job.accel->intersect(from, -frame.n, 0, 2 * height, hit)) continue;
-    const Surface at = make_surface(*work.job.scene, hit, from, -frame.n);
-    if (std::abs(glm::dot(at.ng, frame.n)) > facing_share) break;
-  }
-  return float(darts);
-}
-
-// s >= 2: all light vertices near the camera vertex.
-void join_merged(Work& work) {
-  const Job& job = work.job;
-  const Heuristic h = job.walk.heuristic;
-  const Subpath& camera = work.scratch.camera;
-  const int t = camera.n;
-  const Vertex& v = camera[t - 1];
-  const Vertex& before = camera[t - 2];
-  if (!(v.merge > 0)) return;
-  Shares shares;
-  shares.camera_first = job.walk.light_paths, shares.inner = job.walk.inner_share;
-  const MergeSide side =
-      merge_side(h, {t, v.own, 0, before.own, 0, before.delta, v.sum, v.merge}, v.back, shares, Side::camera);
-  const float radius = merge_radius(job.walk.merging, v.p), full = merge_density(job.walk.merging, v.p);
-  const bool inner = v.merge < full;
-  const Vec3 ng = v.guide.ng;
-  const int most = job.walk.max_edges + 2 - t;
-  Merged sums;
-  int found_any = 0;
-  for_each_near(inner ? job.photons[1] : job.photons[0], v.p, radius, [&](const Photon& p) {
-    if (p.s > most || !same_surface(v, ng, p, radius)) return;
-    const float cosine = std::abs(glm::dot(ng, p.wi));
-    if (!(cosine > 1e-6f)) return;
-    const GuideEval e = evaluate(v.guide, p.wi, Mode::radiance);
-    if (is_black(e.f_cos)) return;
-    const double w = merge_weight(h, v.merge, {p.fixed, p.slope}, e.pdf, side, e.pdf_reverse);
-    ++work.scratch.ledger->merge_at(p.s, t).joins;
-    const size_t row = size_t(std::min(p.s, Ledger::most));
-    const Rgb found = e.f_cos * p.beta / cosine;
-    sums.raw[row] += found;
-    sums.weighted[row] += found * float(w);
-    ++found_any;
-  });
-  if (found_any) {
-    const float times = inner ? float(job.inner_step) : 1;
-    add_merged(work, sums, t, v.beta * (times * (job.edges ? over_coverage(work, v, radius) : 1) / full));
-  }
-  charge(work.scratch, work.scratch.ledger->merge_at(0, t).ticks);
-}
-
 // All joins at the camera subpath's last vertex.
 void join_all(Work& work, const Surface& surface) {
   const Job& job = work.job;
@@ -238,8 +148,8 @@ void join_all(Work& work, const Surface& surface) {
   join_surface(work, surface);
   if (t > job.walk.max_edges || !connectable(camera[t - 1].guide)) return;
   join_next_event(work);
-  if (job.photons) join_merged(work);
-  if (job.stored) return join_stored(work);
+  if (job.photons) join_merged(job, work.sample, work.scratch);
+  if (job.light_half) return join_stored(work);
   const int most = std::min(light.n, job.walk.max_edges + 1 - t);
   Candidate c;
   for (int s = 2; s <= most; ++s)
@@ -269,17 +179,19 @@ void teach_camera(Work& work) {
   record_subpath(fields, *job.training, work.scratch.sightings, camera, Side::camera);
 }
 
+// Where the light subpaths of many tiles are kept at once, joins choose among one in so many.
+constexpr uint32_t stored_share = 4;
+
 }  // namespace
 
 void trace_light_half(const Job& job, Sample& sample, Scratch& scratch) {
   Work work{job, sample, scratch};
   scratch.light.n = 0;
   trace_light_subpath(work);
-  add(scratch.halves->store, scratch.light, work.light_share);
-  if (job.walk.merging.paths > 0 && sample.path % uint64_t(job.inner_step) == sample.pass % uint64_t(job.inner_step))
-    add_photons(scratch.halves->few, scratch.light, job.walk.heuristic, job.walk.inner_share, work.light_share);
-  if (job.walk.merging.paths > 0)
-    add_photons(scratch.halves->photons, scratch.light, job.walk.heuristic, job.walk.inner_share, work.light_share);
+  Halves& halves = *scratch.halves;
+  const bool merges = job.walk.merging.paths > 0;
+  if (!merges || is_one_in(stored_share, sample)) add(halves.store, scratch.light, work.light_share);
+  if (merges) keep_photons(job, sample, work.light_share, scratch);
   charge(scratch, scratch.ledger->light_ticks);
   if (!sample.teaches) return;
   record_subpath(*job.walk.fields, *job.training, scratch.sightings, scratch.light, Side::light);
@@ -289,7 +201,7 @@ void trace_light_half(const Job& job, Sample& sample, Scratch& scratch) {
 void trace_bdpt(const Job& job, Sample& sample, Scratch& scratch) {
   Work work{job, sample, scratch};
   scratch.light.n = 0;
-  if (job.walk.light_paths > 0 && !job.stored) trace_light_subpath(work);
+  if (job.walk.light_paths > 0 && !job.light_half) trace_light_subpath(work);
   charge(scratch, scratch.ledger->light_ticks);
   Subpath& camera = scratch.camera;
   Walk walk;

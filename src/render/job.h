@@ -13,6 +13,12 @@
 
 namespace ajar {
 
+struct Job;
+struct Sample;
+struct Scratch;
+/// Traces one sample; what it finds depends on the sample alone, and on the light halves traced before.
+using Trace = void (*)(const Job&, Sample&, Scratch&);
+
 struct Job {
   const Scene* scene = nullptr;
   const Accel* accel = nullptr;
@@ -21,9 +27,11 @@ struct Job {
   uint64_t seed = 0;
   bool techniques = false;
   bool next_event = true;
-  bool stored = false;                 ///< light subpaths were traced before, and are in the store
-  const PhotonMap* photons = nullptr;  ///< light vertices to merge with; null: none
-  int inner_step = 16; bool edges=true;
+  Trace trace = nullptr;
+  Trace light_half = nullptr;  ///< what is traced before, of all samples of a chunk or batch; null: nothing
+  const PhotonMap* photons = nullptr;  ///< light vertices to merge with: of all light subpaths of the batch, and of
+                                       ///< one in inner_photons; null: none
+  bool merges_alone = false;           ///< nothing but merges brings light, so they need no weights
   const Learning* learning = nullptr;  ///< null: unguided
   Training* training = nullptr;
 };
@@ -69,15 +77,26 @@ struct alignas(64) Scratch {
   static constexpr uint64_t no_path = ~0ull;
 };
 
-/// Traces one sample; what it finds depends on the sample alone.
-using Trace = void (*)(const Job&, Sample&, Scratch&);
-
 void trace_path(const Job&, Sample&, Scratch&);
 void trace_bdpt(const Job&, Sample&, Scratch&);
 void trace_light(const Job&, Sample&, Scratch&);
 /// The first half of guided-bdpt: the light subpath of one sample, put into the chunk's store. The second is
 /// trace_bdpt.
 void trace_light_half(const Job&, Sample&, Scratch&);
+
+/// The light half of photon.
+void trace_photons(const Job&, Sample&, Scratch&);
+void trace_photon(const Job&, Sample&, Scratch&);
+
+/// Beyond the first vertex at which a camera subpath is merged, it is merged with one light subpath in so many: those
+/// merges share what found the vertex, and more of them do not help.
+inline constexpr uint32_t inner_photons = 16;
+/// Whether the sample is one of every n; other ones from pass to pass.
+bool is_one_in(uint32_t n, const Sample& sample);
+/// Puts the light subpath's vertices among those that the batch merges with. share: of the walk.
+void keep_photons(const Job& job, const Sample& sample, double share, Scratch& scratch);
+/// s >= 2: all light vertices near the last vertex of the camera subpath.
+void join_merged(const Job& job, Sample& sample, Scratch& scratch);
 
 /// The time since the last charge goes to a part of the ledger.
 inline void charge(Scratch& scratch, uint64_t& part) {

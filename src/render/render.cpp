@@ -18,15 +18,17 @@ struct Integrator {
   Trace trace;
   bool splats;
   bool guided = false;
+  Trace light_half = nullptr;  // what is traced before, of all samples of a chunk or batch
   bool merges = false;
 };
 constexpr Integrator integrators[] = {{"path", trace_path, false},
                                       {"bdpt", trace_bdpt, true},
                                       {"light", trace_light, true},
                                       {"guided-path", trace_bdpt, false, true},
-                                      {"guided-bdpt", trace_bdpt, true, true},
-                                      {"vcm", trace_bdpt, true, false, true},
-                                      {"guided-vcm", trace_bdpt, true, true, true}};
+                                      {"guided-bdpt", trace_bdpt, true, true, trace_light_half},
+                                      {"vcm", trace_bdpt, true, false, trace_light_half, true},
+                                      {"guided-vcm", trace_bdpt, true, true, trace_light_half, true},
+                                      {"photon", trace_photon, false, false, trace_photons, true}};
 
 const Integrator& find_integrator(const std::string& name) {
   for (const Integrator& i : integrators)
@@ -78,14 +80,14 @@ Scratch& prepare(const Job& job, Batch& batch, uint32_t i, Scratch& scratch) {
 bool trace_half(const Job& job, Sample& sample, Scratch& scratch) {
   const size_t splats = scratch.splats->size();
   scratch.clock = is_timed(sample) ? clock_ticks() : 0;
-  trace_light_half(job, sample, scratch);
+  job.light_half(job, sample, scratch);
   return scratch.splats->size() > splats;
 }
 
-void trace_pixel(const Job& job, Trace trace, Film& film, Sample& sample, bool splat, Scratch& scratch) {
+void trace_pixel(const Job& job, Film& film, Sample& sample, bool splat, Scratch& scratch) {
   const size_t splats = scratch.splats->size();
   scratch.clock = is_timed(sample) ? clock_ticks() : 0;
-  trace(job, sample, scratch);
+  job.trace(job, sample, scratch);
   if (!accept(sample.value, sample, scratch)) sample.value = Rgb(0);
   ++scratch.counters.camera_paths;
   scratch.counters.zero_paths += is_black(sample.value) && !splat && scratch.splats->size() == splats;
@@ -103,17 +105,17 @@ void trace_light_halves(const Job& job, const Film& film, uint32_t chunk, Scratc
     for (int x = x0; x < x1; ++x) halves.samples.push_back({make_sample(job, film, x, y)});
   clear(halves.store);
   halves.photons.clear(), halves.few.clear();
-  if (!job.stored) return;
+  if (!job.light_half) return;
   for (auto& [sample, splat] : halves.samples) splat = trace_half(job, sample, scratch);
   finish(halves.store, job.walk.inner_share);
 }
 
-void trace_camera_halves(const Job& job, Trace trace, Film& film, Scratch& scratch) {
-  for (auto& [sample, splat] : scratch.halves->samples) trace_pixel(job, trace, film, sample, splat, scratch);
+void trace_camera_halves(const Job& job, Film& film, Scratch& scratch) {
+  for (auto& [sample, splat] : scratch.halves->samples) trace_pixel(job, film, sample, splat, scratch);
 }
 
 // Light halves of all chunks, then what is merged with them: their number must not depend on threads or clocks.
-void trace_merged(Job& job, Trace trace, Film& film, uint32_t from, Batch& batch, std::vector<Scratch>& scratches) {
+void trace_merged(Job& job, Film& film, uint32_t from, Batch& batch, std::vector<Scratch>& scratches) {
   const uint32_t count = uint32_t(batch.splats.size());
   const auto at_work = [&](uint32_t i) -> Scratch& { return prepare(job, batch, i, scratches[thread_slot()]); };
   batch.halves.resize(count);
@@ -134,7 +136,7 @@ void trace_merged(Job& job, Trace trace, Film& film, uint32_t from, Batch& batch
   parallel_for(count, [&](uint32_t i) {
     Scratch& scratch = at_work(i);
     scratch.rejected_at = batch.rejected_at[i];
-    trace_camera_halves(job, trace, film, scratch);
+    trace_camera_halves(job, film, scratch);
     batch.rejected_at[i] = scratch.rejected_at;
   });
 }
@@ -151,8 +153,6 @@ Job make_job(const Scene& scene, const Accel& accel, const RenderOptions& option
   job.seed = options.seed;
   job.techniques = options.techniques;
   job.next_event = options.next_event;
-  if (getenv("STEP")) job.inner_step = atoi(getenv("STEP"));
-  if (getenv("EDGES")) job.edges = atoi(getenv("EDGES"));
   return job;
 }
 
@@ -262,17 +262,17 @@ RenderState start_render(const Scene& scene, const RenderOptions& options) {
 
 void render(const Scene& scene, const Accel& accel, const RenderOptions& options, RenderState& state,
             const Monitor& monitor) {
-  const Trace trace = find_integrator(options.integrator).trace;
+  const Integrator& integrator = find_integrator(options.integrator);
   Film& film = state.film;
   RenderStats& stats = state.stats;
   Job job = make_job(scene, accel, options, film);
-  const bool merging = find_integrator(options.integrator).merges && options.merge_radius > 0;
-  job.stored = find_integrator(options.integrator).merges;
-  if (find_integrator(options.integrator).guided) {
+  const bool merging = integrator.merges && options.merge_radius > 0;
+  job.trace = integrator.trace, job.light_half = integrator.light_half;
+  job.merges_alone = integrator.trace == trace_photon;
+  if (integrator.guided) {
     job.learning = &state.learning, job.training = &state.learning.training;
     job.walk.fields = &state.learning.fields;
     job.walk.inner_share = film.splats ? 1 : 0;
-    job.stored = film.splats;
   }
   double wall0 = 0, cpu0 = 0;
   const auto start_clocks = [&] {
@@ -314,12 +314,12 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
     threads.run([&] {
       for (uint32_t i = 0; i < count; ++i) batch.splats[i].clear(), batch.strategies[i].clear();
       if (job.walk.merging.paths > 0) {
-        trace_merged(job, trace, film, from, batch, scratches);
+        trace_merged(job, film, from, batch, scratches);
       } else {
         parallel_for(count, [&](uint32_t i) {
           Scratch& scratch = prepare(job, batch, i, scratches[thread_slot()]);
           trace_light_halves(job, film, from + i, scratch);
-          trace_camera_halves(job, trace, film, scratch);
+          trace_camera_halves(job, film, scratch);
           batch.rejected_at[i] = scratch.rejected_at;
         });
       }
