@@ -32,7 +32,7 @@ struct Arguments {
   int spp = 0, max_depth = std::numeric_limits<int>::min(), threads = 0, roulette_depth = 5;
   uint64_t seed = 0;
   int train = 0;
-  float merge_radius = 2, merge_inner = 1;
+  std::optional<float> merge_radius;
   bool no_next_event = false, png = false, half = false, quiet = false, lenient = false;
 };
 
@@ -60,6 +60,15 @@ double parse_noise(const std::string& text) {
   if (used != text.size() || !(value > 0) || !std::isfinite(value))
     throw Error(fmt::format("--noise {}: not a target; write the relMSE to stop at, above 0, such as 0.01", text));
   return value;
+}
+
+float parse_merge_radius(float radius, const std::string& integrator) {
+  if (!is_merging(integrator))
+    throw Error(fmt::format("--merge-radius: {} merges nothing; take vcm, guided-vcm or photon", integrator));
+  if (!(radius >= 0) || !std::isfinite(radius) || (radius == 0 && integrator == "photon"))
+    throw Error(fmt::format("--merge-radius {}: write pixels, {}", radius,
+                            integrator == "photon" ? "above 0" : "0 to merge nothing"));
+  return radius;
 }
 
 // Index of a name that the option's check let pass.
@@ -142,8 +151,7 @@ RenderOptions render_options(const Arguments& a, Scene& scene) {
   o.sampler = a.sampler == "independent" ? SamplerKind::independent : SamplerKind::sobol;
   o.techniques = !a.techniques.empty();
   o.next_event = !a.no_next_event;
-  o.merge_radius = a.merge_radius;
-  o.merge_inner = a.merge_inner;
+  if (a.merge_radius) o.merge_radius = parse_merge_radius(*a.merge_radius, o.integrator);
   check_next_event(o, scene);
   o.learn = learn_options(a, o.integrator);
   if (!a.versus.empty()) check_versus(a.versus, o.integrator);
@@ -309,8 +317,9 @@ void add_render(CLI::App& app) {
   c->add_option("-o,--out", a->out,
                 "image to write: .exr, or .png for a tonemapped one (default: the scene's name, here)");
   c->add_flag("--png", a->png, "write a tonemapped PNG beside the EXR");
-  c->add_option("--integrator", a->integrator,
-                "path, bdpt, light, guided-path or guided-bdpt (default: the scene's, else bdpt)");
+  c->add_option(
+      "--integrator", a->integrator,
+      "path, bdpt, light, guided-path, guided-bdpt, vcm, guided-vcm or photon (default: the scene's, else bdpt)");
   c->add_option("--spp", a->spp, "samples per pixel")->check(CLI::Range(1, 1 << 30));
   c->add_option("--time", a->time, "wall time to render: 90s, 5m, 1h");
   c->add_option("--cpu-time", a->cpu_time, "CPU time of all threads to render");
@@ -349,8 +358,8 @@ void add_render(CLI::App& app) {
       ->check(CLI::IsMember({"recent", "visits"}));
   c->add_option("--train", a->train, "passes that train the fields and are dropped; after them the fields are frozen")
       ->check(CLI::Range(2, 1 << 20));
-  c->add_option("--merge-radius", a->merge_radius, "of vcm, guided-vcm and photon in the first pass, in pixels");
-  c->add_option("--merge-inner", a->merge_inner, "");
+  c->add_option("--merge-radius", a->merge_radius,
+                "of vcm, guided-vcm and photon in the first pass, in pixels (default 5); it shrinks; 0: no merging");
   c->add_flag("--no-next-event", a->no_next_event, "lights are found by hitting them alone: path and guided-path");
   c->add_option("--save-fields", a->save_fields, "file to save the learned fields to");
   c->add_option("--load-fields", a->load_fields, "fields to start from, saved from a render of the same scene");

@@ -42,6 +42,7 @@ nlohmann::ordered_json options_json(const Run& run, const Film& film) {
                               {"sampler", name_of(o.sampler)},
                               {"next_event", o.next_event},
                               {"defines", run.defines}};
+  if (is_merging(o.integrator)) j["merge_radius"] = o.merge_radius;
   if (!is_guided(o.integrator)) return j;
   j["guide"] = name_of(learn_options(o).guided);
   j["field_memory"] = o.learn.memory;

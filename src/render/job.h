@@ -28,7 +28,7 @@ struct Job {
   bool techniques = false;
   bool next_event = true;
   Trace trace = nullptr;
-  Trace light_half = nullptr;  ///< what is traced before, of all samples of a chunk or batch; null: nothing
+  Trace light_half = nullptr;          ///< what is traced before, of all samples of a chunk or batch; null: nothing
   const PhotonMap* photons = nullptr;  ///< light vertices to merge with: of all light subpaths of the batch, and of
                                        ///< one in inner_photons; null: none
   bool merges_alone = false;           ///< nothing but merges brings light, so they need no weights

@@ -51,8 +51,8 @@ void add_merged(const Merged& sums, int t, const Rgb& factor, Sample& sample, Sc
     sample.value += found;
     gain(scratch.ledger->merge_at(s, t), found * sample.filter);
     if (scratch.strategies)
-      scratch.strategies->push_back({-s, t, Vec2(sample.x, sample.y), sums.raw[size_t(s)] * factor * sample.filter,
-                                     found * sample.filter});
+      scratch.strategies->push_back(
+          {-s, t, Vec2(sample.x, sample.y), sums.raw[size_t(s)] * factor * sample.filter, found * sample.filter});
   }
 }
 
@@ -96,9 +96,9 @@ void join_merged(const Job& job, Sample& sample, Scratch& scratch) {
     ++scratch.ledger->merge_at(p.s, t).joins;
     const Rgb found = e.f_cos * p.beta / cosine;  // (V1)
     const size_t row = size_t(std::min(p.s, Ledger::most));
-    const double w = job.merges_alone ? 1
-                                      : merge_weight(job.walk.heuristic, v.merge, {p.fixed, p.slope}, e.pdf, side,
-                                                     e.pdf_reverse);
+    const double w = job.merges_alone
+                         ? 1
+                         : merge_weight(job.walk.heuristic, v.merge, {p.fixed, p.slope}, e.pdf, side, e.pdf_reverse);
     sums.raw[row] += found;
     sums.weighted[row] += found * float(w);
     any = true;

@@ -190,6 +190,13 @@ double pixels_of(const Film& film, uint32_t from, uint32_t count) {
   return sum;
 }
 
+// What merges beyond the first vertex at which a camera subpath is merged count for (V3). They share the walk that
+// found it, so that many of them tell hardly more than one; measured (results.md).
+constexpr double merge_inner = 0.01;
+
+// Largest radius, of the scene's: what is far from the eye must not be merged across rooms.
+constexpr float most_of_scene = 0.02f;
+
 // Radii of the pass that the film is at: areas shrink with the cube root of the passes, so that bias and variance both
 // vanish (Knaus and Zwicker 2011, alpha = 2/3).
 Merging merging_of(const Scene& scene, const RenderOptions& options, const Film& film, uint32_t chunks) {
@@ -198,11 +205,11 @@ Merging merging_of(const Scene& scene, const RenderOptions& options, const Film&
   const float pixels = options.merge_radius * std::pow(float(film.passes + 1), -1.0f / 6);
   Merging m;
   m.paths = pixels_of(film, film.chunks, count);
-  m.inner = options.merge_inner;
+  m.inner = merge_inner;
   const CameraRay ray = generate(camera, Vec2(camera.width, camera.height) * 0.5f, Vec2(0.5f));
   m.eye = ray.o;
   const float pixel = 1 / std::sqrt(raster_factor(camera, ray.o, ray.o + ray.d));
-  m.most = 0.02f * scene.radius;
+  m.most = most_of_scene * scene.radius;
   if (camera.kind == CameraKind::orthographic)
     m.least = m.most = std::min(pixels * pixel, m.most);
   else
@@ -235,6 +242,8 @@ std::vector<std::string> integrator_names() {
 }
 
 bool is_guided(const std::string& integrator) { return find_integrator(integrator).guided; }
+
+bool is_merging(const std::string& integrator) { return find_integrator(integrator).merges; }
 
 LearnOptions learn_options(const RenderOptions& options) {
   LearnOptions o = options.learn;

@@ -22,8 +22,8 @@ struct StrategyCost {
 struct Ledger {
   static constexpr int most = 8;  ///< the last row has s of so many and more, the last column t
   StrategyCost strategies[most + 1][most + 1];
-  StrategyCost merges[most + 1][most + 1];  ///< of s light and t camera vertices, the one that they share counted in
-                                            ///< both; joins: vertices merged. Ticks are those of s = 0, for all s
+  StrategyCost merges[most + 1][most + 1];     ///< of s light and t camera vertices, the one that they share counted in
+                                               ///< both; joins: vertices merged. Ticks are those of s = 0, for all s
   uint64_t camera_ticks = 0, light_ticks = 0;  ///< of walking, the ray included
   uint64_t learn_ticks = 0;                    ///< of recording what was seen
 

@@ -22,8 +22,7 @@ struct RenderOptions {
   Heuristic heuristic = Heuristic::power;
   SamplerKind sampler = SamplerKind::sobol;
   bool next_event = true;   ///< next-event estimation; only integrators without light subpaths can do without
-  float merge_radius = 2;   ///< of vcm, guided-vcm and photon in the first pass [pixels]; 0: nothing is merged
-  float merge_inner = 1;
+  float merge_radius = 5;   ///< of vcm, guided-vcm and photon, in the first pass [pixels]; 0: nothing is merged
   LearnOptions learn;       ///< guided integrators only
   bool techniques = false;  ///< keep an image of every (s, t)
 };
@@ -34,6 +33,8 @@ inline constexpr int deepest = 4096;
 std::vector<std::string> integrator_names();
 /// Whether it learns fields; throws Error for an unknown integrator.
 bool is_guided(const std::string& integrator);
+/// Whether it merges light vertices with camera vertices; throws Error for an unknown integrator.
+bool is_merging(const std::string& integrator);
 /// What its fields are learned with: an integrator without light subpaths guides the camera's alone.
 LearnOptions learn_options(const RenderOptions& options);
 
