@@ -32,6 +32,7 @@ struct Arguments {
   int spp = 0, max_depth = std::numeric_limits<int>::min(), threads = 0, roulette_depth = 5;
   uint64_t seed = 0;
   int train = 0;
+  std::optional<float> merge_radius;
   bool no_next_event = false, png = false, half = false, quiet = false, lenient = false;
 };
 
@@ -45,6 +46,15 @@ double parse_noise(const std::string& text) {
   if (used != text.size() || !(value > 0) || !std::isfinite(value))
     throw Error(fmt::format("--noise {}: not a target; write the relMSE to stop at, above 0, such as 0.01", text));
   return value;
+}
+
+float parse_merge_radius(float radius, const std::string& integrator) {
+  if (!is_merging(integrator))
+    throw Error(fmt::format("--merge-radius: {} merges nothing; take vcm, guided-vcm or photon", integrator));
+  if (!(radius >= 0) || !std::isfinite(radius) || (radius == 0 && integrator == "photon"))
+    throw Error(fmt::format("--merge-radius {}: write pixels, {}", radius,
+                            integrator == "photon" ? "above 0" : "0 to merge nothing"));
+  return radius;
 }
 
 // Index of a name that the option's check let pass.
@@ -153,6 +163,7 @@ RenderOptions render_options(const Arguments& a, Scene& scene, bool planned) {
   o.sampler = a.sampler == "independent" ? SamplerKind::independent : SamplerKind::sobol;
   o.techniques = !a.techniques.empty();
   o.next_event = !a.no_next_event;
+  if (a.merge_radius) o.merge_radius = parse_merge_radius(*a.merge_radius, o.integrator);
   check_next_event(o, scene);
   if (a.plan == "all") o.integrator = "guided-bdpt";
   o.learn = learn_options(a, o.integrator, planned || is_guided(o.integrator));
@@ -351,7 +362,8 @@ void add_render(CLI::App& app) {
                 "image to write: .exr, or .png for a tonemapped one (default: the scene's name, here)");
   c->add_flag("--png", a->png, "write a tonemapped PNG beside the EXR");
   c->add_option("--integrator", a->integrator,
-                "path, bdpt, light, guided-path or guided-bdpt (default: the scene's, else what the plan says)");
+                "path, bdpt, light, guided-path, guided-bdpt, vcm, guided-vcm, photon, vpl or plain-vpl (default: the "
+                "scene's, else what the plan says)");
   c->add_option("--plan", a->plan,
                 "what to use: auto (a short pilot decides), all, none, or a list of light-subpaths, camera-guiding, "
                 "light-guiding (default: auto where no integrator is named)");
@@ -393,10 +405,13 @@ void add_render(CLI::App& app) {
       ->check(CLI::IsMember({"recent", "visits"}));
   c->add_option("--train", a->train, "passes that train the fields and are dropped; after them the fields are frozen")
       ->check(CLI::Range(2, 1 << 20));
-  c->add_option("--light-choice", a->light_choice,
-                "of next-event estimation among lights: uniform, power, tree, or learned per cell (default: learned for "
-                "guided integrators, else tree)")
+  c->add_option(
+       "--light-choice", a->light_choice,
+       "of next-event estimation among lights: uniform, power, tree, or learned per cell (default: learned for "
+       "guided integrators, else tree)")
       ->check(CLI::IsMember(listed(light_choice_names)));
+  c->add_option("--merge-radius", a->merge_radius,
+                "of vcm, guided-vcm and photon in the first pass, in pixels (default 5); it shrinks; 0: no merging");
   c->add_flag("--no-next-event", a->no_next_event, "lights are found by hitting them alone: path and guided-path");
   c->add_option("--save-fields", a->save_fields, "file to save the learned fields to");
   c->add_option("--load-fields", a->load_fields, "fields to start from, saved from a render of the same scene");

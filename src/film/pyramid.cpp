@@ -44,7 +44,7 @@ void merge(Pyramid& pyramid, const Film& film, const std::vector<std::vector<Str
 void write_pyramid(const Pyramid& pyramid, const Film& film, const std::string& folder) {
   make_folder(folder);
   for (const auto& [st, layer] : pyramid.layers) {
-    const std::string base = fmt::format("{}/s{}t{}", folder, st.first, st.second);
+    const std::string base = fmt::format("{}/{}{}t{}", folder, st.first < 0 ? 'm' : 's', std::abs(st.first), st.second);
     write_exr(base + ".exr", average(film, layer.weighted), {}, false);
     write_exr(base + "-raw.exr", average(film, layer.raw), {}, false);
   }

@@ -3,15 +3,20 @@
 namespace ajar {
 namespace {
 
+// v of (R2) for the strategy that connects the end's last vertex to the one before.
+double share_before(const End& end, double first, double inner) {
+  return end.delta_before ? 0 : (end.n == 2 ? first : inner);
+}
+
 // Sum over the strategies that take vertices away from this end, relative to "this end keeps all n with ordinary
 // densities". first and inner are the raised shares of the strategies that leave one vertex and more; the ratios of
 // density are raised here.
-double handed_over(Heuristic h, const End& end, double first, double inner) {
+double handed_over(Heuristic h, const End& end, double first, double inner, double merge_share) {
   if (end.n == 0) return 0;
   const double last = raise(h, ratio(end.other, end.own));
-  if (end.n == 1) return last * end.sum_before;  // S_0
-  const double share = end.delta_before ? 0 : (end.n == 2 ? first : inner);
-  return last * extend(share, raise(h, ratio(end.other_before, end.own_before)), end.sum_before);  // (R3)
+  if (end.n == 1) return last * end.sum_before;                                                          // S_0
+  const double share = share_before(end, first, inner) + merge_at(h, end.own, end.merge * merge_share);  // (R4)
+  return last * extend(share, raise(h, ratio(end.other_before, end.own_before)), end.sum_before);        // (R3)
 }
 
 }  // namespace
@@ -22,7 +27,7 @@ double mis_weight(Heuristic h, const End& light, const End& camera, const Shares
   // Everything relative to the product of ordinary densities with s vertices from emission and t from the camera. (R1)
   const bool both_walked = light.n > 1 && camera.n > 1;
   const double here = both_walked ? inner : (light.n == 1 ? nee : 1) * (camera.n == 1 ? film : 1);
-  double fewer_light = handed_over(h, light, nee, inner);
+  double fewer_light = handed_over(h, light, nee, inner, camera.n == 1 ? 1 : shares.merge_inner);
   // A strategy with t - 1 .. 1 camera vertices; s + 1 of light: next-event estimation where that is the first one.
   double fewer_camera;
   if (light.n == 0 && camera.n >= 2) {
@@ -31,9 +36,24 @@ double mis_weight(Heuristic h, const End& light, const End& camera, const Shares
     const double share = camera.delta_before ? 0 : (camera.n == 2 ? 0.0 : nee);
     fewer_camera = last * extend(share, raise(h, ratio(camera.other_before, camera.own_before)), camera.sum_before);
   } else {
-    fewer_camera = handed_over(h, camera, film, inner);
+    fewer_camera = handed_over(h, camera, film, inner, 1);
   }
   return here / (here + fewer_light + fewer_camera);
+}
+
+MergeSide merge_side(Heuristic h, const End& end, double back, const Shares& shares, Side side) {
+  const double own = raise(h, ratio(1, end.own));
+  const double first = raise(h, side == Side::light ? shares.light_first : shares.camera_first);
+  const double before = std::min(raise(h, ratio(back, end.own_before)) * end.sum_before, largest_ratio * largest_ratio);
+  return {share_before(end, first, raise(h, shares.inner)) * own, before * own};
+}
+
+double merge_weight(Heuristic h, double merge, const MergeSide& light, double light_reverse, const MergeSide& camera,
+                    double camera_reverse) {
+  const double here = raise(h, merge);
+  const double sum_light = light.fixed + light.slope * raise(h, light_reverse);
+  const double sum_camera = camera.fixed + camera.slope * raise(h, camera_reverse);
+  return here > 0 ? here / (here + sum_light + sum_camera) : 0;  // (R5)
 }
 
 }  // namespace ajar

@@ -14,8 +14,13 @@ double share_of_last(const WalkOptions& options, const Subpath& subpath, const W
 double sum_of_last(const WalkOptions& options, const Subpath& subpath, const Walk& walk) {
   const Vertex& last = subpath[subpath.n - 1];
   if (subpath.n == 1) return last.sum;
+  double share = share_of_last(options, subpath, walk);
+  if (last.merge > 0 && !last.delta) {
+    const double part = walk.side == Side::camera ? 1 : options.merging.inner;
+    share += merge_at(options.heuristic, last.own, last.merge * part);  // (R4)
+  }
   const double r = raise(options.heuristic, ratio(walk.other_before, subpath[subpath.n - 2].own));
-  return extend(share_of_last(options, subpath, walk), r, last.sum);  // (R2)
+  return extend(share, r, last.sum);  // (R2)
 }
 
 }  // namespace
@@ -92,6 +97,11 @@ bool step(const Scene& scene, const Accel& accel, const WalkOptions& options, Su
   v.own = walk.pdf * cosine / v.distance2;
   v.back = walk.planar ? 1 : (before.ng == Vec3(0) ? 1 : std::abs(glm::dot(before.ng, walk.d))) / v.distance2;
   v.sum = walk.sum;
+  v.merge = merge_density(options.merging, v.p);
+  if (walk.side == Side::camera && subpath.n > 2) {
+    walk.straight &= before.delta;
+    if (!walk.straight) v.merge *= float(options.merging.inner);
+  }
   v.delta = false, v.infinite = false;
   v.shines = 0, v.received = 0;
   v.shape = hit.shape, v.instance = hit.instance;

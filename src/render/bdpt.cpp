@@ -17,6 +17,7 @@ struct Work {
 
 float weigh(const Work& work, Candidate& c) {
   c.shares.inner = work.job.walk.inner_share;
+  c.shares.merge_inner = work.job.walk.merging.inner;
   if (!work.job.next_event) c.shares.light_first = 0;
   return float(weight(work.job.walk.heuristic, c));
 }
@@ -151,7 +152,7 @@ void join_next_event(Work& work) {
 // s >= 2: one of all light vertices of the chunk.
 void join_stored(Work& work) {
   const Job& job = work.job;
-  const LightStore& store = work.scratch.store;
+  const LightStore& store = work.scratch.halves->store;
   const Subpath& camera = work.scratch.camera;
   const Vertex& v = camera[camera.n - 1];
   StoreChoice choice;
@@ -176,7 +177,8 @@ void join_all(Work& work, const Surface& surface) {
   join_surface(work, surface);
   if (t > job.walk.max_edges || !connectable(camera[t - 1].guide)) return;
   join_next_event(work);
-  if (job.stored) return join_stored(work);
+  if (job.photons) join_merged(job, work.sample, work.scratch);
+  if (job.light_half) return join_stored(work);
   const int most = std::min(light.n, job.walk.max_edges + 1 - t);
   Candidate c;
   for (int s = 2; s <= most; ++s)
@@ -206,13 +208,19 @@ void teach_camera(Work& work) {
   record_subpath(fields, *job.training, work.scratch.sightings, camera, Side::camera);
 }
 
+// Where the light subpaths of many tiles are kept at once, joins choose among one in so many.
+constexpr uint32_t stored_share = 4;
+
 }  // namespace
 
 void trace_light_half(const Job& job, Sample& sample, Scratch& scratch) {
   Work work{job, sample, scratch};
   scratch.light.n = 0;
   trace_light_subpath(work);
-  add(scratch.store, scratch.light, work.light_share);
+  Halves& halves = *scratch.halves;
+  const bool merges = job.walk.merging.paths > 0;
+  if (!merges || is_one_in(stored_share, sample)) add(halves.store, scratch.light, work.light_share);
+  if (merges) keep_photons(job, sample, work.light_share, scratch);
   charge(scratch, scratch.ledger->light_ticks);
   if (!sample.teaches) return;
   record_subpath(*job.walk.fields, *job.training, scratch.sightings, scratch.light, Side::light);
@@ -222,7 +230,7 @@ void trace_light_half(const Job& job, Sample& sample, Scratch& scratch) {
 void trace_bdpt(const Job& job, Sample& sample, Scratch& scratch) {
   Work work{job, sample, scratch};
   scratch.light.n = 0;
-  if (job.walk.light_paths > 0 && !job.stored) trace_light_subpath(work);
+  if (job.walk.light_paths > 0 && !job.light_half) trace_light_subpath(work);
   charge(scratch, scratch.ledger->light_ticks);
   Subpath& camera = scratch.camera;
   Walk walk;

@@ -4,6 +4,7 @@
 
 #include "ajar/film/pyramid.h"
 #include "ajar/join/connect.h"
+#include "ajar/join/photons.h"
 #include "ajar/join/store.h"
 #include "ajar/path/record.h"
 #include "ajar/render/learning.h"
@@ -11,6 +12,12 @@
 #include "ajar/render/options.h"
 
 namespace ajar {
+
+struct Job;
+struct Sample;
+struct Scratch;
+/// Traces one sample; what it finds depends on the sample alone, and on the light halves traced before.
+using Trace = void (*)(const Job&, Sample&, Scratch&);
 
 /// The light vertices of a pass as virtual point lights, the same for all pixels.
 struct Vpls {
@@ -30,9 +37,13 @@ struct Job {
   uint64_t seed = 0;
   bool techniques = false;
   bool next_event = true;
-  bool stored = false;  ///< light subpaths were traced before, and are in the store
+  Trace trace = nullptr;
+  Trace light_half = nullptr;          ///< what is traced before, of all samples of a chunk or batch; null: nothing
+  const PhotonMap* photons = nullptr;  ///< light vertices to merge with: of all light subpaths of the batch, and of
+                                       ///< one in inner_photons; null: none
+  bool merges_alone = false;           ///< nothing but merges brings light, so they need no weights
   const Vpls* vpls = nullptr;
-  bool guided = false;  ///< fields guide subpaths, and learn from them; else lights alone are learned
+  bool guided = false;                 ///< fields guide subpaths, and learn from them; else lights alone are learned
   const Learning* learning = nullptr;  ///< null: nothing is learned
   Training* training = nullptr;
 };
@@ -50,17 +61,24 @@ struct Sample {
   Rgb value{0};          ///< radiance found by the camera path, unfiltered
 };
 
+/// What the light halves of a chunk's samples leave for the camera halves.
+struct Halves {
+  struct Part {
+    Sample sample;
+    bool splat = false;  ///< its light subpath brought something
+  };
+  std::vector<Part> samples;
+  LightStore store;
+  Photons photons, few;
+};
+
 /// Storage of one thread at work on one chunk; kept from chunk to chunk. Threads share no cache line.
 struct alignas(64) Scratch {
   Subpath camera, light;
   std::vector<float> sums;  ///< of choices
   std::vector<StoreChoice> choices;
-  LightStore store;  ///< of the chunk
-  struct Part {
-    Sample sample;
-    bool splat = false;  ///< its light subpath brought something
-  };
-  std::vector<Part> samples;  ///< of the chunk
+  Halves* halves = nullptr;  ///< of the chunk
+  Halves own_halves;         ///< where those of one chunk are enough
   Counters counters;
   Sightings sightings;
   uint64_t rejected = 0;
@@ -73,9 +91,6 @@ struct alignas(64) Scratch {
   static constexpr uint64_t no_path = ~0ull;
 };
 
-/// Traces one sample; what it finds depends on the sample alone.
-using Trace = void (*)(const Job&, Sample&, Scratch&);
-
 void trace_path(const Job&, Sample&, Scratch&);
 void trace_bdpt(const Job&, Sample&, Scratch&);
 void trace_light(const Job&, Sample&, Scratch&);
@@ -85,6 +100,20 @@ void place_vpls(const Job&, uint32_t pass, std::vector<Scratch>&, Vpls&);
 /// The first half of guided-bdpt: the light subpath of one sample, put into the chunk's store. The second is
 /// trace_bdpt.
 void trace_light_half(const Job&, Sample&, Scratch&);
+
+/// The light half of photon.
+void trace_photons(const Job&, Sample&, Scratch&);
+void trace_photon(const Job&, Sample&, Scratch&);
+
+/// Beyond the first vertex at which a camera subpath is merged, it is merged with one light subpath in so many: those
+/// merges share what found the vertex, and more of them do not help.
+inline constexpr uint32_t inner_photons = 16;
+/// Whether the sample is one of every n; other ones from pass to pass.
+bool is_one_in(uint32_t n, const Sample& sample);
+/// Puts the light subpath's vertices among those that the batch merges with. share: of the walk.
+void keep_photons(const Job& job, const Sample& sample, double share, Scratch& scratch);
+/// s >= 2: all light vertices near the last vertex of the camera subpath.
+void join_merged(const Job& job, Sample& sample, Scratch& scratch);
 
 /// The time since the last charge goes to a part of the ledger.
 inline void charge(Scratch& scratch, uint64_t& part) {
@@ -102,11 +131,11 @@ inline void charge_join(Scratch& scratch, int s, int t) {
 }
 
 /// Notes what a join adds to its pixel.
-inline void gain(Scratch& scratch, int s, int t, const Rgb& pixel) {
-  StrategyCost& cost = scratch.ledger->at(s, t);
+inline void gain(StrategyCost& cost, const Rgb& pixel) {
   ++cost.visible;
   if (const float energy = luminance(pixel); std::abs(energy) < infinity) cost.energy += double(energy);
 }
+inline void gain(Scratch& scratch, int s, int t, const Rgb& pixel) { gain(scratch.ledger->at(s, t), pixel); }
 
 /// The same of a light path's splat, whose filter's integral is 1. What filters carry over the border of the film, one
 /// way and the other, is taken for equal.

@@ -4,13 +4,14 @@
 
 namespace ajar {
 
+StrategyCost& StrategyCost::operator+=(const StrategyCost& o) {
+  joins += o.joins, rays += o.rays, visible += o.visible, ticks += o.ticks, energy += o.energy;
+  return *this;
+}
+
 Ledger& Ledger::operator+=(const Ledger& o) {
   for (int s = 0; s <= most; ++s)
-    for (int t = 0; t <= most; ++t) {
-      StrategyCost& a = strategies[s][t];
-      const StrategyCost& b = o.strategies[s][t];
-      a.joins += b.joins, a.rays += b.rays, a.visible += b.visible, a.ticks += b.ticks, a.energy += b.energy;
-    }
+    for (int t = 0; t <= most; ++t) strategies[s][t] += o.strategies[s][t], merges[s][t] += o.merges[s][t];
   camera_ticks += o.camera_ticks, light_ticks += o.light_ticks, learn_ticks += o.learn_ticks;
   return *this;
 }
@@ -25,8 +26,9 @@ uint64_t clock_ticks() {
 
 uint64_t join_ticks(const Ledger& ledger) {
   uint64_t sum = 0;
-  for (const auto& row : ledger.strategies)
-    for (const StrategyCost& c : row) sum += c.ticks;
+  for (const auto* table : {&ledger.strategies, &ledger.merges})
+    for (const auto& row : *table)
+      for (const StrategyCost& c : row) sum += c.ticks;
   return sum;
 }
 
@@ -36,8 +38,9 @@ uint64_t total_ticks(const Ledger& ledger) {
 
 double total_energy(const Ledger& ledger) {
   double sum = 0;
-  for (const auto& row : ledger.strategies)
-    for (const StrategyCost& c : row) sum += c.energy;
+  for (const auto* table : {&ledger.strategies, &ledger.merges})
+    for (const auto& row : *table)
+      for (const StrategyCost& c : row) sum += c.energy;
   return sum;
 }
 

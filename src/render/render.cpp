@@ -19,15 +19,20 @@ struct Integrator {
   Trace trace;
   bool splats;
   bool guided = false;
-  bool vpls = false;  ///< trains its fields by trace_bdpt first, if it is guided
+  Trace light_half = nullptr;  // what is traced before, of all samples of a chunk or batch
+  bool merges = false;
+  bool vpls = false;  // trains its fields by trace_bdpt first, if it is guided
 };
 constexpr Integrator integrators[] = {{"path", trace_path, false},
                                       {"bdpt", trace_bdpt, true},
                                       {"light", trace_light, true},
                                       {"guided-path", trace_bdpt, false, true},
-                                      {"guided-bdpt", trace_bdpt, true, true},
-                                      {"vpl", trace_vpl, true, true, true},
-                                      {"plain-vpl", trace_vpl, false, false, true}};
+                                      {"guided-bdpt", trace_bdpt, true, true, trace_light_half},
+                                      {"vcm", trace_bdpt, true, false, trace_light_half, true},
+                                      {"guided-vcm", trace_bdpt, true, true, trace_light_half, true},
+                                      {"photon", trace_photon, false, false, trace_photons, true},
+                                      {"vpl", trace_vpl, true, true, trace_light_half, false, true},
+                                      {"plain-vpl", trace_vpl, false, false, nullptr, false, true}};
 
 const Integrator& find_integrator(const std::string& name) {
   for (const Integrator& i : integrators)
@@ -49,6 +54,8 @@ struct Batch {
   std::vector<std::vector<Strategy>> strategies;
   std::vector<Ledger> ledgers;
   std::vector<uint64_t> rejected_at;  // path of each chunk's first rejected value
+  std::vector<Halves> halves;         // only where light subpaths of the whole batch are merged
+  PhotonMap photons[2];
 };
 
 Sample make_sample(const Job& job, const Film& film, int x, int y) {
@@ -67,37 +74,78 @@ Sample make_sample(const Job& job, const Film& film, int x, int y) {
 // Not those that are recorded more than others.
 bool is_timed(const Sample& s) { return hash(0x71c5 + s.path, s.pass) % timed_samples == 0; }
 
+// Lends a thread's scratch to a chunk of the batch.
+Scratch& prepare(const Job& job, Batch& batch, uint32_t i, Scratch& scratch) {
+  scratch.splats = &batch.splats[i];
+  scratch.ledger = &batch.ledgers[i];
+  scratch.strategies = job.techniques ? &batch.strategies[i] : nullptr;
+  scratch.halves = batch.halves.empty() ? &scratch.own_halves : &batch.halves[i];
+  return scratch;
+}
+
 // The light half of a sample; whether it brought something.
 bool trace_half(const Job& job, Sample& sample, Scratch& scratch) {
   const size_t splats = scratch.splats->size();
   scratch.clock = is_timed(sample) ? clock_ticks() : 0;
-  trace_light_half(job, sample, scratch);
+  job.light_half(job, sample, scratch);
   return scratch.splats->size() > splats;
 }
 
-void trace_pixel(const Job& job, Trace trace, Film& film, Sample& sample, bool splat, Scratch& scratch) {
+void trace_pixel(const Job& job, Film& film, Sample& sample, bool splat, Scratch& scratch) {
   const size_t splats = scratch.splats->size();
   scratch.clock = is_timed(sample) ? clock_ticks() : 0;
-  trace(job, sample, scratch);
+  job.trace(job, sample, scratch);
   if (!accept(sample.value, sample, scratch)) sample.value = Rgb(0);
   ++scratch.counters.camera_paths;
   scratch.counters.zero_paths += is_black(sample.value) && !splat && scratch.splats->size() == splats;
   film.camera[sample.path] = sample.value * sample.filter;
 }
 
-void trace_chunk(const Job& job, Trace trace, Film& film, uint32_t chunk, Scratch& scratch) {
+// The samples of a chunk and, where light subpaths are stored, their light halves.
+void trace_light_halves(const Job& job, const Film& film, uint32_t chunk, Scratch& scratch) {
   const int x0 = int(chunk) % tiles_x(film) * tile, y0 = int(chunk) / tiles_x(film) * tile;
   const int x1 = std::min(x0 + tile, film.width), y1 = std::min(y0 + tile, film.height);
+  Halves& halves = *scratch.halves;
   scratch.rejected_at = Scratch::no_path;
-  scratch.samples.clear();
+  halves.samples.clear();
   for (int y = y0; y < y1; ++y)
-    for (int x = x0; x < x1; ++x) scratch.samples.push_back({make_sample(job, film, x, y)});
-  clear(scratch.store);
-  if (job.stored) {
-    for (auto& [sample, splat] : scratch.samples) splat = trace_half(job, sample, scratch);
-    finish(scratch.store, job.walk.inner_share);
+    for (int x = x0; x < x1; ++x) halves.samples.push_back({make_sample(job, film, x, y)});
+  clear(halves.store);
+  halves.photons.clear(), halves.few.clear();
+  if (!job.light_half) return;
+  for (auto& [sample, splat] : halves.samples) splat = trace_half(job, sample, scratch);
+  finish(halves.store, job.walk.inner_share);
+}
+
+void trace_camera_halves(const Job& job, Film& film, Scratch& scratch) {
+  for (auto& [sample, splat] : scratch.halves->samples) trace_pixel(job, film, sample, splat, scratch);
+}
+
+// Light halves of all chunks, then what is merged with them: their number must not depend on threads or clocks.
+void trace_merged(Job& job, Film& film, uint32_t from, Batch& batch, std::vector<Scratch>& scratches) {
+  const uint32_t count = uint32_t(batch.splats.size());
+  const auto at_work = [&](uint32_t i) -> Scratch& { return prepare(job, batch, i, scratches[thread_slot()]); };
+  batch.halves.resize(count);
+  parallel_for(count, [&](uint32_t i) {
+    Scratch& scratch = at_work(i);
+    trace_light_halves(job, film, from + i, scratch);
+    batch.rejected_at[i] = scratch.rejected_at;
+  });
+  std::vector<const Photons*> lists;
+  for (const Halves& h : batch.halves) lists.push_back(&h.photons);
+  fill(batch.photons[0], job.walk.merging, lists);
+  if (job.walk.merging.inner > 0) {
+    std::vector<const Photons*> few;
+    for (const Halves& h : batch.halves) few.push_back(&h.few);
+    fill(batch.photons[1], job.walk.merging, few);
   }
-  for (auto& [sample, splat] : scratch.samples) trace_pixel(job, trace, film, sample, splat, scratch);
+  job.photons = batch.photons;
+  parallel_for(count, [&](uint32_t i) {
+    Scratch& scratch = at_work(i);
+    scratch.rejected_at = batch.rejected_at[i];
+    trace_camera_halves(job, film, scratch);
+    batch.rejected_at[i] = scratch.rejected_at;
+  });
 }
 
 Job make_job(const Scene& scene, const Accel& accel, const RenderOptions& options, const Film& film) {
@@ -133,6 +181,49 @@ uint32_t affordable_chunks(const RenderOptions& options, const RenderState& stat
   return std::max(uint32_t(std::max(affordable, 0.0)), least_chunks);
 }
 
+// Batches of which a pass is made when light subpaths are merged: as few as the bound allows, and alike.
+uint32_t equal_chunks(uint32_t all) {
+  const uint32_t batches = (all + batch_chunks - 1) / batch_chunks;
+  return (all + batches - 1) / batches;
+}
+
+// Light subpaths of chunks from .. from + count - 1: one for each pixel.
+double pixels_of(const Film& film, uint32_t from, uint32_t count) {
+  double sum = 0;
+  for (uint32_t chunk = from; chunk < from + count; ++chunk) {
+    const int x0 = int(chunk) % tiles_x(film) * tile, y0 = int(chunk) / tiles_x(film) * tile;
+    sum += double(std::min(tile, film.width - x0)) * std::min(tile, film.height - y0);
+  }
+  return sum;
+}
+
+// What merges beyond the first vertex at which a camera subpath is merged count for (V3). They share the walk that
+// found it, so that many of them tell hardly more than one; measured (results.md).
+constexpr double merge_inner = 0.01;
+
+// Largest radius, of the scene's: what is far from the eye must not be merged across rooms.
+constexpr float most_of_scene = 0.02f;
+
+// Radii of the pass that the film is at: areas shrink with the cube root of the passes, so that bias and variance both
+// vanish (Knaus and Zwicker 2011, alpha = 2/3).
+Merging merging_of(const Scene& scene, const RenderOptions& options, const Film& film, uint32_t chunks) {
+  const Camera& camera = scene.camera;
+  const uint32_t count = std::min(chunks, chunk_count(film) - film.chunks);
+  const float pixels = options.merge_radius * std::pow(float(film.passes + 1), -1.0f / 6);
+  Merging m;
+  m.paths = pixels_of(film, film.chunks, count);
+  m.inner = merge_inner;
+  const CameraRay ray = generate(camera, Vec2(camera.width, camera.height) * 0.5f, Vec2(0.5f));
+  m.eye = ray.o;
+  const float pixel = 1 / std::sqrt(raster_factor(camera, ray.o, ray.o + ray.d));
+  m.most = most_of_scene * scene.radius;
+  if (camera.kind == CameraKind::orthographic)
+    m.least = m.most = std::min(pixels * pixel, m.most);
+  else
+    m.per_distance = std::min(pixels * pixel, 0.5f);
+  return m;
+}
+
 void note_rejected(RenderStats& stats, const std::vector<uint64_t>& pixels, const Film& film, uint64_t seed) {
   for (const uint64_t p : pixels)
     if (p != Scratch::no_path && stats.replay.size() < 5)
@@ -146,7 +237,7 @@ double even_density(const Scene& scene) { return 2 / std::max(area(scene), 1e-30
 // The job of a pass that joins virtual point lights, which it places.
 Job with_vpls(Job job, const Film& film, std::vector<Scratch>& scratches, Vpls& vpls) {
   job.vpls = &vpls;
-  job.stored = false;
+  job.light_half = nullptr;
   job.walk.light_paths = 0, job.walk.inner_share = 0;  // the other weights are of s = 0 and s = 1 alone
   const uint32_t pass = film.dropped + film.passes;
   if (vpls.pass != pass) place_vpls(job, pass, scratches, vpls);
@@ -174,12 +265,14 @@ std::vector<std::string> integrator_names() {
 bool is_guided(const std::string& integrator) { return find_integrator(integrator).guided; }
 
 bool learns(const RenderOptions& options) { return is_guided(options.integrator) || options.learn_lights; }
+bool is_merging(const std::string& integrator) { return find_integrator(integrator).merges; }
 
 LearnOptions learn_options(const RenderOptions& options) {
   LearnOptions o = options.learn;
   if (!is_guided(options.integrator))
     o.guided = Guided::neither;
-  else if (!find_integrator(options.integrator).splats) o.guided = Guided::camera;
+  else if (!find_integrator(options.integrator).splats)
+    o.guided = Guided::camera;
   return o;
 }
 
@@ -210,6 +303,9 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   Film& film = state.film;
   RenderStats& stats = state.stats;
   Job job = make_job(scene, accel, options, film);
+  const bool merging = integrator.merges && options.merge_radius > 0;
+  job.trace = integrator.trace, job.light_half = integrator.light_half;
+  job.merges_alone = integrator.trace == trace_photon;
   if (learns(options)) {
     job.learning = &state.learning, job.training = &state.learning.training;
     job.walk.fields = &state.learning.fields;
@@ -217,7 +313,6 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   if (is_guided(options.integrator)) {
     job.guided = true;
     job.walk.inner_share = film.splats ? 1 : 0;
-    job.stored = film.splats;
   }
   double wall0 = 0, cpu0 = 0;
   const auto start_clocks = [&] {
@@ -250,7 +345,10 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
            (options.cpu_seconds > 0 && stats.cpu_seconds >= options.cpu_seconds);
   };
   while (!out_of_budget()) {
-    const uint32_t from = film.chunks, count = std::min({batch_chunks, all - from, affordable_chunks(options, state)});
+    const uint32_t from = film.chunks;
+    job.walk.merging = merging ? merging_of(scene, options, film, equal_chunks(all)) : Merging{};
+    const uint32_t count = merging ? std::min(equal_chunks(all), all - from)
+                                   : std::min({batch_chunks, all - from, affordable_chunks(options, state)});
     batch.splats.resize(count);
     batch.strategies.resize(count);
     batch.ledgers.assign(count, {});
@@ -258,17 +356,19 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
     const bool joins_vpls = integrator.vpls && !in_training(state.learning);
     const Trace trace = integrator.vpls && !joins_vpls ? trace_bdpt : integrator.trace;
     threads.run([&] {
-      const Job job_now = joins_vpls ? with_vpls(job, film, scratches, vpls) : job;
-      parallel_for(count, [&](uint32_t i) {
-        Scratch& scratch = scratches[thread_slot()];
-        batch.splats[i].clear();
-        batch.strategies[i].clear();
-        scratch.splats = &batch.splats[i];
-        scratch.ledger = &batch.ledgers[i];
-        scratch.strategies = job.techniques ? &batch.strategies[i] : nullptr;
-        trace_chunk(job_now, trace, film, from + i, scratch);
-        batch.rejected_at[i] = scratch.rejected_at;
-      });
+      Job job_now = joins_vpls ? with_vpls(job, film, scratches, vpls) : job;
+      job_now.trace = trace;
+      for (uint32_t i = 0; i < count; ++i) batch.splats[i].clear(), batch.strategies[i].clear();
+      if (job.walk.merging.paths > 0) {
+        trace_merged(job_now, film, from, batch, scratches);
+      } else {
+        parallel_for(count, [&](uint32_t i) {
+          Scratch& scratch = prepare(job_now, batch, i, scratches[thread_slot()]);
+          trace_light_halves(job_now, film, from + i, scratch);
+          trace_camera_halves(job_now, film, scratch);
+          batch.rejected_at[i] = scratch.rejected_at;
+        });
+      }
       if (film.splats) merge(film, batch.splats);
       if (job.techniques) merge(state.pyramid, film, batch.strategies);
       for (const Ledger& ledger : batch.ledgers) stats.ledger += ledger;

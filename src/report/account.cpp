@@ -28,6 +28,21 @@ Json strategies_json(const Ledger& ledger) {
   return list;
 }
 
+// Merges of (s, t), the vertex that they share counted on both sides; their time by t alone.
+Json merges_json(const Ledger& ledger) {
+  const double energy = total_energy(ledger), ticks = double(total_ticks(ledger));
+  Json list = Json::array();
+  for (int t = 2; t <= Ledger::most; ++t) {
+    const double time = per(double(ledger.merges[0][t].ticks), ticks);
+    for (int s = 2; s <= Ledger::most; ++s) {
+      const StrategyCost& c = ledger.merges[s][t];
+      if (c.joins > 0) list.push_back({{"s", s}, {"t", t}, {"merges", c.joins}, {"energy", per(c.energy, energy)}});
+    }
+    if (time > 0) list.push_back({{"t", t}, {"time", time}});
+  }
+  return list;
+}
+
 Json tracing_json(const Ledger& l) {
   const double ticks = double(total_ticks(l));
   return {{"camera", per(double(l.camera_ticks), ticks)},
@@ -68,6 +83,7 @@ void add_account(Json& record, const RenderState& state) {
   record["tracing"] = tracing_json(state.stats.ledger);
   if (!state.learning.fields.table.slots.empty()) record["fields"] = fields_json(state.learning, state.film);
   record["strategies"] = strategies_json(state.stats.ledger);
+  if (const Json merges = merges_json(state.stats.ledger); !merges.empty()) record["merges"] = merges;
 }
 
 }  // namespace ajar

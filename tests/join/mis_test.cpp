@@ -21,12 +21,14 @@ using kit::OracleVertex;
 struct SideView {
   std::vector<double> own, other;
   std::vector<bool> delta;
+  std::vector<double> merge;
   std::vector<double> sums;  // S_i
 };
 
 SideView view(const OraclePath& path, Side side, Heuristic h) {
   const size_t n = path.vertices.size();
   SideView v;
+  bool straight = true;  // deltas alone between the lens and the vertex
   for (size_t i = 0; i < n; ++i) {
     const OracleVertex& x = path.vertices[side == Side::light ? i : n - 1 - i];
     const bool lens = side == Side::camera ? i == 0 : i == n - 1;
@@ -34,12 +36,16 @@ SideView view(const OraclePath& path, Side side, Heuristic h) {
     v.own.push_back(side == Side::light ? light : camera);
     v.other.push_back(side == Side::light ? camera : light);
     v.delta.push_back(x.delta);
+    straight = straight && (i < 2 || path.vertices[n - i].delta);
+    const bool inside = i > 0 && i < n - 1;
+    v.merge.push_back(inside ? double(x.merge * (side == Side::light || straight ? 1 : path.merge_inner)) : 0);
   }
   const bool light = side == Side::light;
   const double first = light ? double(path.nee / path.vertices[0].light) : double(path.light_paths);
   v.sums.push_back(light && path.hittable ? 1 : 0);
   for (size_t i = 1; i < n; ++i) {
-    const double share = v.delta[i] || v.delta[i - 1] ? 0 : raise(h, i == 1 ? first : double(path.inner));
+    double share = v.delta[i] || v.delta[i - 1] ? 0 : raise(h, i == 1 ? first : double(path.inner));
+    if (!v.delta[i]) share += merge_at(h, v.own[i], v.merge[i] * (light ? double(path.merge_inner) : 1));
     v.sums.push_back(extend(share, raise(h, ratio(v.other[i - 1], v.own[i - 1])), v.sums[i - 1]));
   }
   return v;
@@ -49,7 +55,7 @@ End end_of(const SideView& v, int n) {
   if (n == 0) return {};
   const auto i = size_t(n - 1);
   if (n == 1) return {1, v.own[0], v.other[0], 1, 0, false, v.sums[0]};
-  return {n, v.own[i], v.other[i], v.own[i - 1], v.other[i - 1], v.delta[i - 1], v.sums[i - 1]};
+  return {n, v.own[i], v.other[i], v.own[i - 1], v.other[i - 1], v.delta[i - 1], v.sums[i - 1], v.merge[i]};
 }
 
 // Weights of all strategies by the fast way, 0 for those that cannot make the path.
@@ -57,10 +63,18 @@ std::vector<double> fast_weights(const OraclePath& path, Heuristic h) {
   const int n = int(path.vertices.size());
   const SideView light = view(path, Side::light, h), camera = view(path, Side::camera, h);
   const auto possible = kit::densities(path);
-  const Shares shares{double(path.nee / path.vertices[0].light), double(path.light_paths), double(path.inner)};
-  std::vector<double> out(size_t(n), 0.0);
+  const Shares shares{double(path.nee / path.vertices[0].light), double(path.light_paths), double(path.inner),
+                      double(path.merge_inner)};
+  std::vector<double> out(2 * size_t(n), 0.0);
   for (int s = 0; s < n; ++s)
     if (possible[size_t(s)] > 0) out[size_t(s)] = mis_weight(h, end_of(light, s), end_of(camera, n - s), shares);
+  for (int j = 1; j < n - 1; ++j) {
+    if (!(possible[size_t(n + j)] > 0)) continue;
+    // The densities of the vertices before come last, once both directions at the merge are known.
+    End l = end_of(light, j + 1), c = end_of(camera, n - j);
+    const MergeSide a = merge_side(h, l, 1, shares, Side::light), b = merge_side(h, c, 1, shares, Side::camera);
+    out[size_t(n + j)] = merge_weight(h, c.merge, a, l.other_before, b, c.other_before);
+  }
   return out;
 }
 
@@ -80,6 +94,9 @@ struct Maker {
     p.nee = p.hittable ? static_cast<long double>(density()) : p.vertices[0].light;
     p.light_paths = uniform() < 0.5 ? 1 : std::floor(1 + 1e6 * uniform());
     p.inner = uniform() < 0.5 ? 1 : 2 * uniform();
+    p.merge_inner = uniform() < 0.3 ? 0 : uniform();
+    if (uniform() < 0.5)
+      for (OracleVertex& x : p.vertices) x.merge = density();
     return p;
   }
 };
@@ -91,7 +108,7 @@ int expect_oracle(const OraclePath& path, Heuristic h, double tolerance) {
   const auto possible = int(std::count_if(slow.begin(), slow.end(), [](long double w) { return w > 0; }));
   for (size_t s = 0; s < fast.size(); ++s)
     EXPECT_NEAR(fast[s], double(slow[s]), tolerance * double(slow[s]) + 1e-300)
-        << "s = " << s << " of " << path.vertices.size() << " vertices";
+        << "s = " << s << " of " << path.vertices.size() << " vertices, merges after them";
   if (possible > 0) {
     EXPECT_NEAR(std::accumulate(fast.begin(), fast.end(), 0.0), 1, 1e-9);
   }

@@ -8,7 +8,7 @@ namespace ajar::kit {
 std::vector<long double> densities(const OraclePath& path) {
   const auto& x = path.vertices;
   const size_t n = x.size();
-  std::vector<long double> out(n, 0);
+  std::vector<long double> out(2 * n, 0);
   for (size_t s = 0; s < n; ++s) {
     const size_t t = n - s;
     const bool joined_at_delta = s > 0 && (x[s - 1].delta || x[s].delta);
@@ -17,6 +17,15 @@ std::vector<long double> densities(const OraclePath& path) {
     for (size_t i = 0; i < s; ++i) product *= i == 0 && s == 1 ? path.nee : x[i].light;
     for (size_t i = s; i < n; ++i) product *= i == n - 1 ? 1 : x[i].camera;
     out[s] = product;
+  }
+  for (size_t j = 1; j + 1 < n; ++j) {
+    if (x[j].delta) continue;
+    bool straight = true;
+    for (size_t i = j + 1; i + 1 < n; ++i) straight = straight && x[i].delta;
+    long double product = x[j].merge * (straight ? 1 : path.merge_inner);
+    for (size_t i = 0; i <= j; ++i) product *= x[i].light;
+    for (size_t i = j; i + 1 < n; ++i) product *= x[i].camera;
+    out[n + j] = product;
   }
   return out;
 }

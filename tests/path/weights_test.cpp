@@ -6,6 +6,7 @@
 
 #include "ajar/field/emission.h"
 #include "ajar/join/connect.h"
+#include "ajar/join/photons.h"
 #include "kit/oracle.h"
 #include "kit/stage.h"
 #include "train.h"
@@ -83,12 +84,13 @@ double camera_density(const Scene& scene, const WholePath& path, size_t i) {
   return to_area(pdf, path.points[i], w, distance2(path, i + 1, i));
 }
 
-OraclePath densities_afresh(const Scene& scene, const WholePath& path, double light_paths) {
+OraclePath densities_afresh(const Scene& scene, const WholePath& path, double light_paths, const Merging& merging) {
   OraclePath out;
   const LightPoint& light = path.light;
   for (size_t i = 0; i < path.points.size(); ++i)
-    out.vertices.push_back(
-        {light_density(scene, path, i), camera_density(scene, path, i), i > 0 && path.points[i].delta});
+    out.vertices.push_back({light_density(scene, path, i), camera_density(scene, path, i),
+                            i > 0 && path.points[i].delta, merge_density(merging, path.points[i].p)});
+  out.merge_inner = merging.inner;
   out.hittable = !light.delta_position && !light.delta_direction;
   out.light_paths = light_paths;
   out.nee = out.vertices[0].light;
@@ -136,8 +138,10 @@ struct Tracer {
 };
 
 // Strategies that bdpt treats alike, each of which must agree.
-enum class Way { seen, hit, next_event, splat, join };
-constexpr const char* way_names[] = {"light seen", "light hit (s = 0)", "next event (s = 1)", "splat (t = 1)", "join"};
+enum class Way { seen, hit, next_event, splat, join, merge };
+constexpr size_t ways = 6;
+constexpr const char* way_names[] = {"light seen", "light hit (s = 0)", "next event (s = 1)", "splat (t = 1)", "join",
+                                     "merge"};
 
 Way way_of(int s, int t) {
   if (s == 0) return t == 2 ? Way::seen : Way::hit;
@@ -148,17 +152,23 @@ struct Tally {
   Heuristic heuristic = Heuristic::power;
   const Fields* fields = nullptr;
   double light_paths = 333;
-  int compared[5] = {}, off[5] = {};
-  double worst[5] = {};
+  Merging merging;
+  int compared[ways] = {}, off[ways] = {};
+  double worst[ways] = {};
 
-  void compare(const Scene& scene, const Candidate& c, WholePath path, int s) {
+  void compare(const Scene& scene, Candidate& c, const WholePath& path, int s) {
+    c.shares.merge_inner = merging.inner;
+    compare(scene, weight(heuristic, c), path, size_t(s), way_of(s, int(path.points.size()) - s));
+  }
+
+  // which: of the oracle's strategies.
+  void compare(const Scene& scene, double fast, WholePath path, size_t which, Way kind) {
     path.fields = fields;
-    const OraclePath slow = densities_afresh(scene, path, light_paths);
-    const auto expected = weights(slow, heuristic == Heuristic::power ? 2 : 1);
-    const double fast = weight(heuristic, c), right = double(expected[size_t(s)]);
+    const OraclePath slow = densities_afresh(scene, path, light_paths, merging);
+    const double right = double(weights(slow, heuristic == Heuristic::power ? 2 : 1)[which]);
     // Relative, or absolute where the weight hardly counts: float rounding in long chains of densities.
     const double error = std::abs(fast - right) / std::max(right, 1e-4);
-    const auto way = size_t(way_of(s, int(path.points.size()) - s));
+    const auto way = size_t(kind);
     ++compared[way];
     off[way] += !(error < 1e-3);
     worst[way] = std::max(worst[way], error);
@@ -194,6 +204,54 @@ WholePath lit(const LightPoint& light, const Vec3& wi, const Traced& camera, int
   return path;
 }
 
+// The light's s - 1 vertices, and as their next one the camera's last of t: false where they do not see each other.
+bool reach(const Tracer& tracer, const Traced& light, int s, const Traced& camera, int t, Traced& out) {
+  const Vertex& a = light.path[s - 2];
+  const Vertex& c = camera.path[t - 1];
+  out = light;
+  out.path.n = s - 1;
+  out.surfaces.resize(size_t(s - 2));
+  Walk& walk = out.walk;
+  walk = Walk{};
+  walk.side = Side::light, walk.first_share = light.walk.first_share;
+  walk.d = glm::normalize(c.p - a.p);
+  const GuideEval e = evaluate(a.guide, walk.d, Mode::importance);
+  if (!(e.pdf > 0) || is_black(e.f_cos)) return false;
+  out.path[s - 2].delta = false;
+  walk.o = offset(a.p, a.ng, a.error, walk.d);
+  walk.pdf = e.pdf, walk.other_before = double(e.pdf_reverse) * a.back, walk.beta = a.beta * e.f_cos / e.pdf;
+  Surface surface;
+  if (!step(tracer.scene, tracer.accel, tracer.options, out.path, walk, surface)) return false;
+  out.surfaces.push_back(surface);
+  return length2(out.path[s - 1].p - c.p) < 1e-10f;
+}
+
+// Merges of the camera's vertices with light vertices that are put just there.
+void compare_merges(const Tracer& tracer, const Traced& light, const Traced& camera, Tally& tally) {
+  const Heuristic h = tally.heuristic;
+  for (int t = 2; t <= camera.path.n; ++t)
+    for (int s = 3; s <= light.path.n + 1; ++s) {
+      const Vertex& c = camera.path[t - 1];
+      const Vertex& before = camera.path[t - 2];
+      Traced there;
+      if (!connectable(c.guide) || !connectable(light.path[s - 2].guide)) continue;
+      if (!reach(tracer, light, s, camera, t, there)) continue;
+      Photons photons;
+      add_photons(photons, there.path, h, 1, there.walk.first_share);
+      if (photons.empty() || photons.back().s != s) continue;
+      const Photon& p = photons.back();
+      const GuideEval e = evaluate(c.guide, p.wi, Mode::radiance);
+      if (is_black(e.f_cos)) continue;
+      const MergeSide side = merge_side(h, {t, c.own, 0, before.own, 0, before.delta, c.sum, c.merge}, c.back,
+                                        {1, tally.light_paths}, Side::camera);
+      const double fast = merge_weight(h, c.merge, {p.fixed, p.slope}, e.pdf, side, e.pdf_reverse);
+      const WholePath path = joined(there, s - 1, camera, t);
+      WholePath smooth = path;
+      smooth.points[size_t(s - 1)].delta = false;
+      tally.compare(tracer.scene, fast, smooth, smooth.points.size() + size_t(s - 1), Way::merge);
+    }
+}
+
 void compare_all(const Tracer& tracer, Traced& light, Traced& camera, const Vec2& lens, Sampler sampler, Tally& tally) {
   const Scene& scene = tracer.scene;
   const double n = tally.light_paths, share = light.walk.first_share;
@@ -226,6 +284,7 @@ void compare_all(const Tracer& tracer, Traced& light, Traced& camera, const Vec2
       end.path.add().p = k.p;
       tally.compare(scene, c, joined(light, s, end, 1), s);
     }
+  if (tally.merging.paths > 0) compare_merges(tracer, light, camera, tally);
   if (!camera.escaped) return;
   for (const uint32_t l : scene.infinite_lights)
     if (join_escape(scene, tally.fields, l, camera.path, camera.walk, c)) {
@@ -238,6 +297,7 @@ void compare_all(const Tracer& tracer, Traced& light, Traced& camera, const Vec2
 struct Case {
   Heuristic heuristic = Heuristic::power;
   const Fields* fields = nullptr;
+  Merging merging = {};
 };
 
 void expect_oracle(const Scene& scene, int paths, const Case& which) {
@@ -248,6 +308,7 @@ void expect_oracle(const Scene& scene, int paths, const Case& which) {
   tracer.options.heuristic = which.heuristic;
   tracer.options.fields = which.fields;
   tracer.options.light_paths = tally.light_paths;
+  tracer.options.merging = tally.merging = which.merging;
   int compared = 0, vertices = 0, guided = 0;
   for (int i = 0; i < paths; ++i) {
     Sampler c = make_sampler(SamplerKind::independent, 1, Side::camera, uint64_t(i), 0);
@@ -261,13 +322,14 @@ void expect_oracle(const Scene& scene, int paths, const Case& which) {
     for (const Traced* t : {&camera, &light})
       for (int k = 1; k < t->path.n; ++k) ++vertices, guided += t->path[k].guide.mix > 0.2f;
   }
-  for (size_t way = 0; way < 5; ++way) {
+  for (size_t way = 0; way < ways; ++way) {
     // Rounding of positions makes a few weights uncertain, where vertices nearly touch or directions graze.
     EXPECT_LE(tally.off[way], tally.compared[way] / 200)
         << way_names[way] << ": of " << tally.compared[way] << ", worst " << tally.worst[way];
     compared += tally.compared[way];
   }
   EXPECT_GT(compared, paths / 2);
+  EXPECT_TRUE(which.merging.paths == 0 || tally.compared[size_t(Way::merge)] > paths / 50);
   EXPECT_TRUE(!which.fields || guided > vertices / 20) << guided << " of " << vertices << " are too few";
 }
 
@@ -279,6 +341,8 @@ void expect_oracle(const Scene& scene, int paths = 3000) {
     expect_oracle(scene, paths, {heuristic, nullptr});
     SCOPED_TRACE("guided");
     expect_oracle(scene, paths / 2, {heuristic, &fields});
+    SCOPED_TRACE("merging");
+    expect_oracle(scene, paths / 3, {heuristic, &fields, {500, {0, 0, 4}, 0.01f, 0, 1, 0.3}});
   }
 }
 

@@ -107,6 +107,8 @@ void expect_same_bytes(const RenderState& a, const RenderState& b) {
       EXPECT_EQ(x.rays, y.rays);
       EXPECT_EQ(x.visible, y.visible);
       EXPECT_EQ(x.energy, y.energy);
+      EXPECT_EQ(a.stats.ledger.merges[s][t].joins, b.stats.ledger.merges[s][t].joins);
+      EXPECT_EQ(a.stats.ledger.merges[s][t].energy, b.stats.ledger.merges[s][t].energy);
     }
   EXPECT_EQ(a.film.dropped, b.film.dropped);
   expect_same_learning(a.learning, b.learning);
@@ -134,7 +136,7 @@ TEST(Determinism, ThreadsDoNotMatter) {
   const Accel accel(scene);
   for (const std::string& integrator : integrator_names()) {
     RenderOptions o = options_of(integrator, 3);
-    o.techniques = integrator == "bdpt";
+    o.techniques = integrator == "bdpt" || integrator == "vcm";
     o.threads = 1;
     const RenderState one = rendered(scene, accel, o);
     for (const int threads : {2, 7}) {

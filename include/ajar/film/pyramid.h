@@ -8,7 +8,8 @@
 
 namespace ajar {
 
-/// A contribution of the strategy with s light and t camera vertices. For t = 1 raster is where it lands and the values
+/// A contribution of the strategy with s light and t camera vertices; -s where it merges them, and the vertex that they
+/// share counts on both sides. For t = 1 raster is where it lands and the values
 /// are still to be divided by the number of light subpaths; else raster is its pixel in the crop window.
 struct Strategy {
   int s = 0, t = 0;
@@ -25,7 +26,7 @@ struct Pyramid {
 
 /// Adds the contributions of consecutive chunks in their order.
 void merge(Pyramid& pyramid, const Film& film, const std::vector<std::vector<Strategy>>& chunks);
-/// Writes DIR/s1t2.exr ... (weighted) and DIR/s1t2-raw.exr ...; the weighted ones add up to the image. Throws Error.
+/// Writes DIR/s1t2.exr ... (weighted) and DIR/s1t2-raw.exr ..., m2t2.exr where merged; the weighted ones add up to the image. Throws Error.
 void write_pyramid(const Pyramid& pyramid, const Film& film, const std::string& folder);
 
 }  // namespace ajar

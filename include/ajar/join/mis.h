@@ -2,6 +2,7 @@
 // Leaves: the weight of the strategy at hand among all (s, t). Pure functions: no scene, no vertex, nothing mutated.
 #pragma once
 
+#include "ajar/core/sampler.h"
 #include "ajar/path/prefix.h"
 
 namespace ajar {
@@ -16,6 +17,7 @@ struct End {
   double own_before = 1, other_before = 0;  ///< a_(n-2)
   bool delta_before = false;                ///< the event at a_(n-2) is a delta
   double sum_before = 0;                    ///< S_(n-2), see extend
+  double merge = 0;                         ///< what own is multiplied by for a merge at a_(n-1); 0: none there
 };
 
 /// The strategy with one vertex on this side draws its end afresh (next-event estimation), or comes more often (one
@@ -24,11 +26,25 @@ struct Shares {
   double light_first = 1;   ///< density of next-event estimation over that of emission for a_0
   double camera_first = 1;  ///< number of light paths that one camera sample's film sees: light paths of a pass
   double inner = 1;  ///< what a join of two vertices that both were walked to counts for, as a factor on its density
+  double merge_inner = 1;  ///< what merges beyond the first vertex that the camera sees count for
 };
 
 /// Weight of the strategy that joins light (s = light.n >= 0) and camera (t = camera.n >= 1) vertices. For s = 0 the
 /// camera's last vertex lies on a light: camera.other is the emission density there. For s = 1, light.own is the
 /// emission density too.
 double mis_weight(Heuristic h, const End& light, const End& camera, const Shares& shares);
+
+/// What one side of a merge contributes to the sum over the other strategies, relative to a merge's own density over
+/// its MergeEnd::merge, while the density of going back is not known yet: fixed + slope * raise(h, density).
+struct MergeSide {
+  double fixed = 0, slope = 0;
+};
+/// The side whose last vertex is at the merge. other and other_before of the end are not read; back turns the density
+/// per solid angle of going back into the area density of the vertex before. (R5)
+MergeSide merge_side(Heuristic h, const End& end, double back, const Shares& shares, Side side);
+/// Weight of the merge; reverse: densities per solid angle of going on to the vertex before on each side. merge is
+/// pi r^2 N times its share.
+double merge_weight(Heuristic h, double merge, const MergeSide& light, double light_reverse, const MergeSide& camera,
+                    double camera_reverse);
 
 }  // namespace ajar

@@ -17,9 +17,10 @@ struct Vertex {
   Vec3 ng{0};           ///< geometric normal as the shape has it; zero for a point light
   float distance2 = 0;  ///< squared, to the vertex before
   Rgb beta{0};  ///< throughput that arrives here, divided by the densities up to here; vertex 0: emitted over density
-  float back = 0;  ///< solid-angle density here of the direction back times this = area density at the vertex before
-  double own = 0;  ///< area density of this vertex as its own side generated it (solid angle when infinite)
-  double sum = 0;  ///< S of the vertex *before* this one, mis.h (R3)
+  float back = 0;   ///< solid-angle density here of the direction back times this = area density at the vertex before
+  double own = 0;   ///< area density of this vertex as its own side generated it (solid angle when infinite)
+  double sum = 0;   ///< S of the vertex *before* this one, mis.h (R3)
+  float merge = 0;  ///< merge_density here (walk.h), on the camera's side times what the merge counts for
   bool delta = false;     ///< the subpath went on from here by a delta event
   bool infinite = false;  ///< vertex 0: a direction rather than a place
   float received =

@@ -20,6 +20,25 @@ struct Counters {
   Counters& operator+=(const Counters& o);
 };
 
+/// Where light subpaths are merged into camera subpaths: within a radius that depends on the place alone, so that both
+/// sides agree on it. It is as large as so many pixels look from the eye, wherever the place is seen from.
+struct Merging {
+  double paths = 0;  ///< light subpaths that each camera vertex is merged with; 0: no merging
+  Vec3 eye{0};
+  float per_distance = 0;     ///< radius over distance from the eye
+  float least = 0, most = 0;  ///< radius [m]
+  double inner = 1;           ///< Shares::merge_inner (join/mis.h)
+};
+
+inline float merge_radius(const Merging& m, const Vec3& p) {
+  return std::clamp(m.per_distance * std::sqrt(length2(p - m.eye)), m.least, m.most);
+}
+
+/// pi r^2 N: what one side's density at a place is multiplied by for a merge there.
+inline float merge_density(const Merging& m, const Vec3& p) {
+  return m.paths > 0 ? pi * sqr(merge_radius(m, p)) * float(m.paths) : 0;
+}
+
 struct WalkOptions {
   int max_edges = 1 << 20;  ///< of a whole path from light to camera
   int roulette_from = 5;    ///< edges that are traced without roulette
@@ -30,6 +49,7 @@ struct WalkOptions {
   double inner_share = 1;          ///< Shares::inner of all joins (join/mis.h)
   double light_paths = 1;          ///< light subpaths that splat to the film, for each camera sample of a pixel; with
                                    ///< 0, and an inner share of 0, weights are of s = 0 and s = 1 alone
+  Merging merging;
 };
 
 /// The ray that will find the next vertex, and what that vertex needs to know about its making.
@@ -45,6 +65,7 @@ struct Walk {
   double first_share = 1;   ///< v_1 of (R2), not raised
   EmissionSample start;     ///< of a light subpath
   Rgb survival{1};          ///< throughput since the start, for roulette
+  bool straight = true;     ///< all events so far were delta
   float promise = 0;        ///< what the fields expected the subpath to bring when it began; 0: they do not know
 };
 

@@ -13,6 +13,8 @@ struct StrategyCost {
   uint64_t visible = 0;  ///< that brought something
   uint64_t ticks = 0;    ///< of the clock, in timed samples
   double energy = 0;     ///< luminance that they add to the image, weighted; summed over pixels and passes
+
+  StrategyCost& operator+=(const StrategyCost& other);
 };
 
 /// Sums over the samples of an image. One sample in timed_samples is timed, part by part; what is not a join is charged
@@ -20,10 +22,13 @@ struct StrategyCost {
 struct Ledger {
   static constexpr int most = 8;  ///< the last row has s of so many and more, the last column t
   StrategyCost strategies[most + 1][most + 1];
+  StrategyCost merges[most + 1][most + 1];     ///< of s light and t camera vertices, the one that they share counted in
+                                               ///< both; joins: vertices merged. Ticks are those of s = 0, for all s
   uint64_t camera_ticks = 0, light_ticks = 0;  ///< of walking, the ray included
   uint64_t learn_ticks = 0;                    ///< of recording what was seen
 
   StrategyCost& at(int s, int t) { return strategies[s < most ? s : most][t < most ? t : most]; }
+  StrategyCost& merge_at(int s, int t) { return merges[s < most ? s : most][t < most ? t : most]; }
   Ledger& operator+=(const Ledger& other);
 };
 

@@ -21,10 +21,11 @@ struct RenderOptions {
   int roulette_depth = 5;  ///< edges of a subpath that are traced without roulette
   Heuristic heuristic = Heuristic::power;
   SamplerKind sampler = SamplerKind::sobol;
-  bool next_event = true;   ///< next-event estimation; only integrators without light subpaths can do without
-  LearnOptions learn;       ///< guided integrators, and others that learn lights
+  bool next_event = true;     ///< next-event estimation; only integrators without light subpaths can do without
+  float merge_radius = 5;     ///< of vcm, guided-vcm and photon, in the first pass [pixels]; 0: nothing is merged
+  LearnOptions learn;         ///< guided integrators, and others that learn lights
   bool learn_lights = false;  ///< path and bdpt: learn which lights cells see (LearnOptions::lights), and nothing else
-  bool techniques = false;  ///< keep an image of every (s, t)
+  bool techniques = false;    ///< keep an image of every (s, t)
 };
 
 /// Path depth at which tracing stops even when it is unlimited: no scene needs it, and it bounds memory.
@@ -35,6 +36,8 @@ std::vector<std::string> integrator_names();
 bool is_guided(const std::string& integrator);
 /// Whether anything is learned.
 bool learns(const RenderOptions& options);
+/// Whether it merges light vertices with camera vertices; throws Error for an unknown integrator.
+bool is_merging(const std::string& integrator);
 /// What its fields are learned with: an integrator without light subpaths guides the camera's alone.
 LearnOptions learn_options(const RenderOptions& options);
 

@@ -1,0 +1,113 @@
+// Merging: camera vertices take the light that arrives at light vertices near them (Georgiev et al. 2012).
+
+#include "job.h"
+
+namespace ajar {
+namespace {
+
+// What takes part in a merge: surfaces that face the same way (cosine) and are not far above or below (of the radius).
+constexpr float facing_share = 0.9f, plane_share = 0.2f;
+
+// Darts thrown for surface at most.
+constexpr int most_darts = 16;
+
+// Whether what arrives at the photon would arrive at the camera vertex: surfaces that face other ways, and those that
+// lie in front of it or behind, are others.
+bool same_surface(const Vertex& v, const Photon& p, float radius) {
+  const float facing = glm::dot(v.guide.ng, p.n);
+  if ((v.guide.bsdf.opaque ? facing : std::abs(facing)) < facing_share) return false;
+  return std::abs(glm::dot(v.guide.ng, p.p - v.p)) < plane_share * radius;
+}
+
+// One over the share of the disc about a vertex that is surface, so that what lies at an edge or in a corner is not
+// taken for dark: the mean number of darts until one hits (Booth 2007).
+float over_coverage(const Job& job, const Sample& sample, const Vertex& v, int t, float radius) {
+  const Frame frame = make_frame(v.guide.ng);
+  const float height = plane_share * radius;
+  Sampler sampler = make_sampler(SamplerKind::independent, hash(job.seed, 0xd15c + uint64_t(t)), Side::camera,
+                                 sample.path, sample.pass);
+  int darts = 1;
+  for (; darts < most_darts; ++darts) {
+    const Vec2 u = sampler.next2();
+    const float r = radius * std::sqrt(u.x), phi = 2 * pi * u.y;
+    const Vec3 from = v.p + frame.to_world({r * std::cos(phi), r * std::sin(phi), height});
+    Hit hit;
+    if (!job.accel->intersect(from, -frame.n, 0, 2 * height, hit)) continue;
+    const Surface at = make_surface(*job.scene, hit, from, -frame.n);
+    if (std::abs(glm::dot(at.ng, frame.n)) > facing_share) break;
+  }
+  return float(darts);  // (V4)
+}
+
+// Sums over the merges at one camera vertex, by s.
+struct Merged {
+  std::array<Rgb, Ledger::most + 1> raw{}, weighted{};
+};
+
+void add_merged(const Merged& sums, int t, const Rgb& factor, Sample& sample, Scratch& scratch) {
+  for (int s = 2; s <= Ledger::most; ++s) {
+    const Rgb found = sums.weighted[size_t(s)] * factor;
+    if (is_black(found) || !accept(found, sample, scratch)) continue;
+    sample.value += found;
+    gain(scratch.ledger->merge_at(s, t), found * sample.filter);
+    if (scratch.strategies)
+      scratch.strategies->push_back(
+          {-s, t, Vec2(sample.x, sample.y), sums.raw[size_t(s)] * factor * sample.filter, found * sample.filter});
+  }
+}
+
+MergeSide camera_side(const Job& job, const Subpath& camera) {
+  const int t = camera.n;
+  const Vertex &v = camera[t - 1], &before = camera[t - 2];
+  Shares shares;
+  shares.camera_first = job.walk.light_paths, shares.inner = job.walk.inner_share;
+  const End end{t, v.own, 0, before.own, 0, before.delta, v.sum, v.merge};
+  return merge_side(job.walk.heuristic, end, v.back, shares, Side::camera);
+}
+
+}  // namespace
+
+bool is_one_in(uint32_t n, const Sample& sample) { return (sample.path + sample.pass) % n == 0; }
+
+void keep_photons(const Job& job, const Sample& sample, double share, Scratch& scratch) {
+  const WalkOptions& walk = job.walk;
+  Photons& photons = scratch.halves->photons;
+  const size_t first = photons.size();
+  add_photons(photons, scratch.light, walk.heuristic, walk.inner_share, share);
+  if (walk.merging.inner > 0 && is_one_in(inner_photons, sample))
+    scratch.halves->few.insert(scratch.halves->few.end(), photons.begin() + ptrdiff_t(first), photons.end());
+}
+
+void join_merged(const Job& job, Sample& sample, Scratch& scratch) {
+  const Subpath& camera = scratch.camera;
+  const int t = camera.n, most = job.walk.max_edges + 2 - t;
+  const Vertex& v = camera[t - 1];
+  if (!(v.merge > 0)) return;
+  const MergeSide side = camera_side(job, camera);
+  const float radius = merge_radius(job.walk.merging, v.p), full = merge_density(job.walk.merging, v.p);
+  const bool inner = v.merge < full;
+  Merged sums;
+  bool any = false;
+  for_each_near(job.photons[inner], v.p, radius, [&](const Photon& p) {
+    const float cosine = std::abs(glm::dot(v.guide.ng, p.wi));
+    if (p.s > most || !same_surface(v, p, radius) || !(cosine > 1e-6f)) return;
+    const GuideEval e = evaluate(v.guide, p.wi, Mode::radiance);
+    if (is_black(e.f_cos)) return;
+    ++scratch.ledger->merge_at(p.s, t).joins;
+    const Rgb found = e.f_cos * p.beta / cosine;  // (V1)
+    const size_t row = size_t(std::min(p.s, Ledger::most));
+    const double w = job.merges_alone
+                         ? 1
+                         : merge_weight(job.walk.heuristic, v.merge, {p.fixed, p.slope}, e.pdf, side, e.pdf_reverse);
+    sums.raw[row] += found;
+    sums.weighted[row] += found * float(w);
+    any = true;
+  });
+  if (any) {
+    const float few = inner ? float(inner_photons) : 1;
+    add_merged(sums, t, v.beta * (few * over_coverage(job, sample, v, t, radius) / full), sample, scratch);
+  }
+  charge(scratch, scratch.ledger->merge_at(0, t).ticks);
+}
+
+}  // namespace ajar

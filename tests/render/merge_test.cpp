@@ -1,0 +1,153 @@
+// Integrators that merge: energy, leaks, bias that goes with the radius, and what is left when nothing is merged.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "kit/stage.h"
+#include "measure.h"
+
+namespace ajar {
+namespace {
+
+using namespace kit;
+
+constexpr const char* merging[] = {"vcm", "guided-vcm", "photon"};
+
+RenderOptions with_radius(const std::string& integrator, float pixels, uint32_t spp = 4) {
+  RenderOptions o;
+  o.integrator = integrator;
+  o.merge_radius = pixels;
+  o.spp = spp;
+  return o;
+}
+
+double mean(const Picture& p) {
+  double sum = 0;
+  for (const float x : p.pixels) sum += double(x);
+  return sum / double(p.pixels.size());
+}
+
+Picture render_once(const Scene& scene, const RenderOptions& o) {
+  const Accel accel(scene);
+  return develop(rendered(scene, accel, o).film);
+}
+
+TEST(Merging, OffIsGuidedBdpt) {
+  const Scene scene = cornell(40);
+  const Picture off = render_once(scene, with_radius("guided-vcm", 0, 10));
+  const Picture bdpt = render_once(scene, with_radius("guided-bdpt", 5, 10));
+  EXPECT_EQ(off.pixels, bdpt.pixels);
+}
+
+// Radiance 1 / (1 - a) everywhere. Every wall meets others, so that discs hang over edges in many pixels.
+TEST(Merging, KeepsTheEnergyOfAFurnace) {
+  Material wall;
+  wall.reflectance = Rgb(0.5f);
+  for (const Oven oven : {Oven::box, Oven::sphere})
+    for (const char* integrator : merging) {
+      const Picture p = render_once(furnace(oven, wall, Rgb(1), 24), with_radius(integrator, 2, 24));
+      EXPECT_NEAR(mean(p), 2, 0.02) << integrator << " oven " << int(oven);
+    }
+}
+
+// The mean over blocks, where what merging blurs stays in its block, is that of bdpt once the radius is small.
+TEST(Merging, ConvergesAsTheRadiusShrinks) {
+  const Scene scene = cornell(24);
+  const Estimate right = measure(scene, statistical("bdpt"), {12, 64, 1});
+  for (const char* integrator : merging) {
+    RenderOptions o = statistical(integrator);
+    o.merge_radius = 0.2f;
+    expect_same(measure(scene, o, {12, 64, 100}), right, integrator);
+  }
+}
+
+// What a radius does to the image falls with it.
+TEST(Merging, BiasFallsWithTheRadius) {
+  const Scene scene = cornell(24);
+  const Estimate right = measure(scene, statistical("bdpt"), {8, 64, 1});
+  double before = infinity;
+  for (const float pixels : {8.0f, 3.0f, 1.0f}) {
+    RenderOptions o = statistical("photon");
+    o.merge_radius = pixels;
+    const Estimate e = measure(scene, o, {4, 128, 100});
+    double off = 0;
+    for (size_t i = 0; i < e.mean.size(); ++i)
+      off += (std::pow(e.mean[i] - right.mean[i], 2) - e.variance[i] - right.variance[i]) /
+             (std::pow(right.mean[i], 2) + 1e-3);
+    EXPECT_LT(off, 0.6 * before) << pixels << " pixels";
+    before = std::max(off, 1e-6);
+  }
+}
+
+// A closed box, divided by a wall of no thickness or next to none; the lamp shines in one half, the camera is in the
+// other.
+Scene divided(float thickness) {
+  Scene scene;
+  scene.filter = make_filter(FilterKind::box);
+  const uint32_t grey = add_diffuse(scene, Rgb(0.7f));
+  set_camera(scene, {-0.9f, 0, 0}, {0, 0, 0}, 90, 24, 24);
+  add_box(scene, Vec3(-1), Vec3(1), grey, true);
+  if (thickness > 0) {
+    add_box(scene, {-thickness, -1.01f, -1.01f}, {thickness, 1.01f, 1.01f}, grey);
+  } else {
+    Material both;
+    both.kind = MaterialKind::twosided;
+    both.nested[0] = both.nested[1] = grey;
+    add_quad(scene, {0, -1.01f, -1.01f}, {0, 2.02f, 0}, {0, 0, 2.02f}, add_material(scene, both));
+  }
+  const uint32_t lamp = add_quad(scene, {0.3f, 0.9f, -0.2f}, {0.4f, 0, 0}, {0, 0, 0.4f}, grey);
+  add_area_light(scene, lamp, Rgb(20));
+  finish(scene);
+  return scene;
+}
+
+TEST(Merging, ThinWallsLetNoLightThrough) {
+  for (const float thickness : {0.0f, 1e-3f})
+    for (const char* integrator : merging) {
+      SCOPED_TRACE(integrator);
+      const Scene scene = divided(thickness);
+      const Picture wide = render_once(scene, with_radius(integrator, 3, 6));
+      // The wall itself fills the middle of the image.
+      for (int y = 6; y < 18; ++y)
+        for (int x = 6; x < 18; ++x) ASSERT_EQ(wide.pixels[3 * size_t(y * 24 + x)], 0) << x << ' ' << y;
+      // Floor and walls share what lies below the wall, within the radius; so little that it goes with it.
+      const Picture narrow = render_once(scene, with_radius(integrator, 0.3f, 6));
+      EXPECT_LT(mean(wide), 0.1);
+      EXPECT_LE(mean(narrow), 0.3 * mean(wide));
+    }
+}
+
+// A camera that all but touches three walls.
+TEST(Merging, CameraInACorner) {
+  Scene scene = cornell(24);
+  set_camera(scene, Vec3(-0.9999f, -0.9999f, -0.9999f), {0.5f, 0.2f, 0.4f}, 100, 24, 24);
+  finish(scene);
+  const double right = mean(render_once(scene, with_radius("bdpt", 0, 64)));
+  for (const char* integrator : merging)
+    EXPECT_NEAR(mean(render_once(scene, with_radius(integrator, 2, 64))), right, 0.04 * right) << integrator;
+}
+
+TEST(Merging, NoLightIsBlack) {
+  Scene scene = cornell(16);
+  for (Shape& s : scene.shapes) s.light = none;
+  scene.lights.clear();
+  finish(scene);
+  for (const char* integrator : merging)
+    EXPECT_EQ(mean(render_once(scene, with_radius(integrator, 5))), 0) << integrator;
+}
+
+// Raw images of merges tell the same light as joins of as long paths.
+TEST(Merging, IsCountedInTheLedger) {
+  const Scene scene = cornell(24);
+  const Accel accel(scene);
+  const RenderState state = rendered(scene, accel, with_radius("photon", 3, 8));
+  double energy = 0;
+  for (const auto& row : state.stats.ledger.merges)
+    for (const StrategyCost& c : row) energy += c.energy;
+  const double seen = state.stats.ledger.strategies[0][2].energy;
+  EXPECT_NEAR(energy + seen, total_energy(state.stats.ledger), 1e-6 * energy);
+  EXPECT_GT(energy, 0);
+}
+
+}  // namespace
+}  // namespace ajar
