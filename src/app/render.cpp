@@ -28,6 +28,7 @@ struct Arguments {
       heuristic = "power", sampler = "sobol", log, reference, checkpoint, resume, techniques, integrator, save_fields,
       load_fields, guide = "both", field_memory, field_structure, field_rule, field_rate, versus;
   std::optional<std::string> noise;
+  std::optional<double> at;
   std::vector<std::string> defines, features;
   int spp = 0, max_depth = std::numeric_limits<int>::min(), threads = 0, roulette_depth = 5;
   uint64_t seed = 0;
@@ -233,7 +234,9 @@ void run_render(Arguments a) {
   const double wall0 = wall_seconds(), cpu0 = process_cpu_seconds();
   if (a.out.empty()) a.out = std::filesystem::path(a.scene).stem().string() + ".exr";
   check_writable(a.out);
-  Scene scene = load_scene(a.scene, load_options(a.defines, a.lenient));
+  LoadOptions load = load_options(a.defines, a.lenient);
+  load.time = a.at;
+  Scene scene = load_scene(a.scene, load);
   if (!a.size.empty()) set_size(scene.camera, a.size);
   Run run;
   run.scene_path = a.scene, run.out_path = a.out, run.defines = a.defines;
@@ -293,7 +296,7 @@ void add_render(CLI::App& app) {
                 "image to write: .exr, or .png for a tonemapped one (default: the scene's name, here)");
   c->add_flag("--png", a->png, "write a tonemapped PNG beside the EXR");
   c->add_option("--integrator", a->integrator,
-                "path, bdpt, light, guided-path or guided-bdpt (default: the scene's, else bdpt)");
+                "path, bdpt, light, guided-path, guided-bdpt, vpl or plain-vpl (default: the scene's, else bdpt)");
   c->add_option("--spp", a->spp, "samples per pixel")->check(CLI::Range(1, 1 << 30));
   c->add_option("--time", a->time, "wall time to render: 90s, 5m, 1h");
   c->add_option("--cpu-time", a->cpu_time, "CPU time of all threads to render");
@@ -310,6 +313,7 @@ void add_render(CLI::App& app) {
   c->add_option("--sampler", a->sampler, "sobol (Owen-scrambled) or independent")
       ->check(CLI::IsMember({"sobol", "independent"}));
   c->add_option("-D", a->defines, "name=value: a parameter of the scene")->allow_extra_args(false);
+  c->add_option("--at", a->at, "time at which the scene's <animation>s are read (default: each at its first key)");
   c->add_option("--aov", a->features, "more channels in the EXR: albedo,normal,position,variance")
       ->delimiter(',')
       ->check(CLI::IsMember({"albedo", "normal", "position", "variance"}));
