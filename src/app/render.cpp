@@ -76,6 +76,8 @@ LearnOptions learn_options(const Arguments& a, const std::string& integrator) {
   if (a.train % 2) throw Error(fmt::format("--train {}: passes come in pairs; write an even number", a.train));
   if (integrator == "guided-path" && a.guide == "light")
     throw Error("--guide light: guided-path has no light subpaths; leave it out, or take guided-bdpt");
+  if (integrator == "vpl" && a.guide != "both")
+    throw Error(fmt::format("--guide {}: vpl guides light subpaths alone; leave it out", a.guide));
   if (!a.save_fields.empty()) check_file(a.save_fields);
   LearnOptions o;
   o.guided = a.guide == "camera" ? Guided::camera : a.guide == "light" ? Guided::light : Guided::both;

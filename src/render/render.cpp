@@ -175,7 +175,9 @@ bool is_guided(const std::string& integrator) { return find_integrator(integrato
 
 LearnOptions learn_options(const RenderOptions& options) {
   LearnOptions o = options.learn;
-  if (!find_integrator(options.integrator).splats) o.guided = Guided::camera;
+  const Integrator& integrator = find_integrator(options.integrator);
+  if (!integrator.splats) o.guided = Guided::camera;
+  if (integrator.vpls) o.guided = Guided::light;  // walks are short, and the price of a guide is not
   return o;
 }
 
