@@ -75,6 +75,17 @@ TEST(Sequence, FramesAreUnbiased) {
   expect_same(frames_of("vpl", 8), truth, "vpl with carried fields, path");
 }
 
+// Energy: in a furnace every pixel is 1 / (1 - albedo), and most of it passes corners, where joins and walks share.
+TEST(Vpl, KeepsEnergyInAFurnace) {
+  Material grey;
+  grey.reflectance = Rgb(0.7f);
+  const Scene scene = furnace(Oven::box, grey);
+  for (const char* integrator : {"vpl", "plain-vpl"}) {
+    const Estimate e = measure(scene, statistical(integrator), {.batches = 4, .passes = 16, .seed = 3});
+    EXPECT_NEAR(mean(e), 1 / 0.3, 0.01 / 0.3) << integrator;
+  }
+}
+
 TEST(Sequence, ImagesNeverDrawTheNumbersThatTaught) {
   SequenceOptions s;
   for (const bool numbers : {true, false}) {
