@@ -57,6 +57,8 @@ RenderOptions render_options(const Arguments& a, const Scene& scene) {
   if (!is_guided(o.integrator) && (a.guide != "both" || !a.field_memory.empty()))
     throw Error(fmt::format("{}: the integrator {} learns no fields; add --integrator guided-bdpt",
                             a.guide != "both" ? "--guide" : "--field-memory", o.integrator));
+  if (o.integrator == "vpl" && a.guide != "both")
+    throw Error(fmt::format("--guide {}: vpl guides light subpaths alone; leave it out", a.guide));
   o.learn.guided = a.guide == "camera" ? Guided::camera : a.guide == "light" ? Guided::light : Guided::both;
   if (!a.field_memory.empty()) o.learn.memory = parse_bytes("--field-memory", a.field_memory);
   return o;

@@ -28,6 +28,7 @@ struct Arguments {
       heuristic = "power", sampler = "sobol", log, reference, checkpoint, resume, techniques, integrator, save_fields,
       load_fields, guide = "both", field_memory, field_structure, field_rule, field_rate, versus, plan, light_choice;
   std::optional<std::string> noise;
+  std::optional<double> at;
   std::vector<std::string> defines, features;
   int spp = 0, max_depth = std::numeric_limits<int>::min(), threads = 0, roulette_depth = 5;
   uint64_t seed = 0;
@@ -86,6 +87,8 @@ LearnOptions learn_options(const Arguments& a, const std::string& integrator, bo
   if (a.train % 2) throw Error(fmt::format("--train {}: passes come in pairs; write an even number", a.train));
   if (integrator == "guided-path" && a.guide == "light")
     throw Error("--guide light: guided-path has no light subpaths; leave it out, or take guided-bdpt");
+  if (integrator == "vpl" && a.guide != "both")
+    throw Error(fmt::format("--guide {}: vpl guides light subpaths alone; leave it out", a.guide));
   if (!a.save_fields.empty()) check_file(a.save_fields);
   LearnOptions o;
   o.lights = lights || a.light_choice.empty();
@@ -291,7 +294,9 @@ void run_render(Arguments a) {
   const double wall0 = wall_seconds(), cpu0 = process_cpu_seconds();
   if (a.out.empty()) a.out = std::filesystem::path(a.scene).stem().string() + ".exr";
   check_writable(a.out);
-  Scene scene = load_scene(a.scene, load_options(a.defines, a.lenient));
+  LoadOptions load = load_options(a.defines, a.lenient);
+  load.time = a.at;
+  Scene scene = load_scene(a.scene, load);
   if (!a.size.empty()) set_size(scene.camera, a.size);
   Run run;
   run.scene_path = a.scene, run.out_path = a.out, run.defines = a.defines;
@@ -383,6 +388,7 @@ void add_render(CLI::App& app) {
   c->add_option("--sampler", a->sampler, "sobol (Owen-scrambled) or independent")
       ->check(CLI::IsMember({"sobol", "independent"}));
   c->add_option("-D", a->defines, "name=value: a parameter of the scene")->allow_extra_args(false);
+  c->add_option("--at", a->at, "time at which the scene's <animation>s are read (default: each at its first key)");
   c->add_option("--aov", a->features, "more channels in the EXR: albedo,normal,position,variance")
       ->delimiter(',')
       ->check(CLI::IsMember({"albedo", "normal", "position", "variance"}));

@@ -15,7 +15,7 @@ double handed_over(Heuristic h, const End& end, double first, double inner, doub
   if (end.n == 0) return 0;
   const double last = raise(h, ratio(end.other, end.own));
   if (end.n == 1) return last * end.sum_before;                                                          // S_0
-  const double share = share_before(end, first, inner) + merge_at(h, end.own, end.merge * merge_share);  // (R4)
+  const double share = share_before(end, first, inner) + merge_at(h, end.own, end.merge * merge_share);  // (K5)
   return last * extend(share, raise(h, ratio(end.other_before, end.own_before)), end.sum_before);        // (R3)
 }
 
@@ -53,7 +53,7 @@ double merge_weight(Heuristic h, double merge, const MergeSide& light, double li
   const double here = raise(h, merge);
   const double sum_light = light.fixed + light.slope * raise(h, light_reverse);
   const double sum_camera = camera.fixed + camera.slope * raise(h, camera_reverse);
-  return here > 0 ? here / (here + sum_light + sum_camera) : 0;  // (R5)
+  return here > 0 ? here / (here + sum_light + sum_camera) : 0;  // (K6)
 }
 
 }  // namespace ajar

@@ -17,7 +17,7 @@ double sum_of_last(const WalkOptions& options, const Subpath& subpath, const Wal
   double share = share_of_last(options, subpath, walk);
   if (last.merge > 0 && !last.delta) {
     const double part = walk.side == Side::camera ? 1 : options.merging.inner;
-    share += merge_at(options.heuristic, last.own, last.merge * part);  // (R4)
+    share += merge_at(options.heuristic, last.own, last.merge * part);  // (K5)
   }
   const double r = raise(options.heuristic, ratio(walk.other_before, subpath[subpath.n - 2].own));
   return extend(share, r, last.sum);  // (R2)

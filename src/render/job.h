@@ -24,7 +24,7 @@ struct Vpls {
   LightStore store;
   uint32_t pass = ~0u;   ///< that they are of
   uint32_t paths = 256;  ///< light subpaths of a pass
-  double worth = 256;    ///< light subpaths that a join with the set counts for against a walked edge (V1)
+  double worth = 256;    ///< light subpaths that a join with the set counts for against a walked edge (I1)
   double even = 0;       ///< vertices per area and light subpath; read where no field tells
   int joins = 8;         ///< at each vertex of a camera subpath that can be joined
 };

@@ -36,7 +36,7 @@ float over_coverage(const Job& job, const Sample& sample, const Vertex& v, int t
     const Surface at = make_surface(*job.scene, hit, from, -frame.n);
     if (std::abs(glm::dot(at.ng, frame.n)) > facing_share) break;
   }
-  return float(darts);  // (V4)
+  return float(darts);  // (K4)
 }
 
 // Sums over the merges at one camera vertex, by s.
@@ -94,7 +94,7 @@ void join_merged(const Job& job, Sample& sample, Scratch& scratch) {
     const GuideEval e = evaluate(v.guide, p.wi, Mode::radiance);
     if (is_black(e.f_cos)) return;
     ++scratch.ledger->merge_at(p.s, t).joins;
-    const Rgb found = e.f_cos * p.beta / cosine;  // (V1)
+    const Rgb found = e.f_cos * p.beta / cosine;  // (K1)
     const size_t row = size_t(std::min(p.s, Ledger::most));
     const double w = job.merges_alone
                          ? 1

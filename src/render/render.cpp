@@ -197,7 +197,7 @@ double pixels_of(const Film& film, uint32_t from, uint32_t count) {
   return sum;
 }
 
-// What merges beyond the first vertex at which a camera subpath is merged count for (V3). They share the walk that
+// What merges beyond the first vertex at which a camera subpath is merged count for (K3). They share the walk that
 // found it, so that many of them tell hardly more than one; measured (results.md).
 constexpr double merge_inner = 0.01;
 
@@ -269,10 +269,13 @@ bool is_merging(const std::string& integrator) { return find_integrator(integrat
 
 LearnOptions learn_options(const RenderOptions& options) {
   LearnOptions o = options.learn;
-  if (!is_guided(options.integrator))
+  const Integrator& integrator = find_integrator(options.integrator);
+  if (!integrator.guided)
     o.guided = Guided::neither;
-  else if (!find_integrator(options.integrator).splats)
+  else if (!integrator.splats)
     o.guided = Guided::camera;
+  else if (integrator.vpls)
+    o.guided = Guided::light;  // walks are short, and the price of a guide is not
   return o;
 }
 

@@ -47,7 +47,7 @@ double density_of_lights(const Job& job, const Vec3& p, const Vec3& ng, const Ve
 }
 
 // The share of a path that joins have whose edge is x - y, of all that could find it: the rest is for the walk from x
-// to y. Of the edge alone, so that both ways say the same. walked: area density of y as the walk from x finds it. (V1)
+// to y. Of the edge alone, so that both ways say the same. walked: area density of y as the walk from x finds it. (I1)
 double share_of_joins(const Job& job, const Vec3& y, const Vec3& ng, const Vec3& to_x, double walked) {
   const double lights = job.vpls->worth * density_of_lights(job, y, ng, to_x);
   return lights > 0 ? lights / (lights + walked) : 0;

@@ -131,6 +131,44 @@ int expect_unbiased(const LightStore& store, const std::vector<Subpath>& cameras
   return lit;
 }
 
+// The same of several choices at once, from all places.
+TEST(LightStore, SeveralStandForAllPlaces) {
+  const Room room(1, true);
+  const LightStore store = room.store(64);
+  int lit = 0;
+  for (const Subpath& camera : room.cameras(12)) {
+    const std::vector<double> g = brought(store, camera, most_edges);
+    const double expected = std::accumulate(g.begin(), g.end(), 0.0) / store.paths;
+    std::vector<float> sums;
+    std::vector<StoreChoice> choices;
+    double sum = 0;
+    constexpr int n = 4000;
+    for (int i = 0; i < n; ++i) {  // evenly spaced u: the mean is an integral, not a guess
+      choose_some(store, end_of(camera), most_edges, 5, (float(i) + 0.5f) / n, sums, choices);
+      EXPECT_LE(choices.size(), 5u);
+      for (const StoreChoice& c : choices) sum += double(c.weight) * g[index_of(store, c)];
+    }
+    EXPECT_NEAR(sum / n, expected, 0.01 * expected);
+    lit += expected > 0;
+  }
+  EXPECT_GT(lit, 8);
+}
+
+TEST(LightStore, PartsAddUpToTheWhole) {
+  const Room room;
+  const LightStore whole = room.store(8);
+  LightStore joined;
+  append(joined, whole);
+  append(joined, whole);
+  EXPECT_EQ(joined.paths, 2 * whole.paths);
+  ASSERT_EQ(joined.places.size(), 2 * whole.places.size());
+  for (size_t i = 0; i < whole.places.size(); ++i) {
+    const auto a = whole.subpath(whole.places[i]), b = joined.subpath(joined.places[whole.places.size() + i]);
+    EXPECT_EQ(a.back().p, b.back().p);
+    EXPECT_EQ(a.front().p, b.front().p);
+  }
+}
+
 TEST(LightStore, StandsForAllPlaces) {
   const Room room;
   EXPECT_GT(expect_unbiased(room.store(64), room.cameras(12)), 8);

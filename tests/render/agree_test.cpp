@@ -1,6 +1,6 @@
-// path = bdpt = light tracing = guided path = guided bdpt by z-test, one small scene for each feature. What an integrator cannot
-// sample is left out: light tracing makes no light seen over mirrors and glass alone and no environment seen directly;
-// path tracing finds no caustic of a light without extent.
+// path = bdpt = light tracing = guided path = guided bdpt = virtual point lights by z-test, one small scene for each
+// feature. What an integrator cannot sample is left out: light tracing makes no light seen over mirrors and glass alone
+// and no environment seen directly; path tracing finds no caustic of a light without extent.
 #include <gtest/gtest.h>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -426,6 +426,11 @@ TEST_P(Agree, InEveryBlock) {
     expect_same(measure(scene, options, {.batches = 16, .passes = 120, .seed = 2000}), bdpt, "path, bdpt");
     options.integrator = "guided-path";
     expect_same(measure(scene, options, {.batches = 16, .passes = 40, .seed = 5000}), bdpt, "guided-path, bdpt");
+    for (const char* vpls : {"plain-vpl", "vpl"}) {
+      options.integrator = vpls;
+      expect_same(measure(scene, options, {.batches = 16, .passes = 12, .seed = 6000}), bdpt,
+                  std::string(vpls) + ", bdpt");
+    }
   }
   if (initials.find('l') != std::string::npos) {
     options.integrator = "light";

@@ -1,6 +1,7 @@
 // Metrics against numbers worked out by hand, by other programs, and against what they promise.
 
 #include "ajar/report/metrics.h"
+#include "ajar/report/sequence.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -231,6 +232,32 @@ double slow_ssim(const Picture& image, const Picture& reference) {
 TEST(Ssim, AgreesWithTheDefinition) {
   const Picture a = pattern(37, 29, 0.6), b = pattern(37, 29);
   EXPECT_NEAR(ssim(a, b), slow_ssim(a, b), 1e-12);
+}
+
+// Changes that the reference has, too, are no flicker; others count relative to its brightness.
+TEST(Flicker, IsOfChangesThatTheReferenceLacks) {
+  const auto grey = [](float value) { return Picture{2, 1, {"R", "G", "B"}, std::vector<float>(6, value)}; };
+  EXPECT_EQ(flicker(grey(1), grey(3), grey(2), grey(4)), 0);
+  EXPECT_NEAR(flicker(grey(1), grey(1.5f), grey(2), grey(2)), 0.25 / 4.01, 1e-9);
+  EXPECT_NEAR(flicker(grey(0), grey(0), grey(0), grey(0.1f)), 0.01 / 0.02, 1e-6);
+  EXPECT_THROW(flicker(grey(0), grey(0), grey(0), Picture{1, 1, {"R", "G", "B"}, {0, 0, 0}}), Error);
+}
+
+TEST(Flicker, FiguresOfAllFrames) {
+  std::vector<FrameFigures> frames(3);
+  for (int i = 0; i < 3; ++i) frames[size_t(i)].frame = i, frames[size_t(i)].relmse = i + 1;
+  frames[1].flicker = 0.5, frames[2].flicker = 1.5;
+  frames[2].parameters["sun"] = "1, 2";
+  EXPECT_EQ(mean_of(frames).relmse, 2);
+  EXPECT_EQ(mean_of(frames).flicker, 1);
+  const std::string csv = sequence_csv(frames);
+  EXPECT_EQ(csv,
+            "frame,sun,seconds,cpu_seconds,spp,mean,relmse,relmse_trimmed,flicker\n"
+            "0,,0,0,0,0,1,,\n1,,0,0,0,0,2,,0.5\n2,\"1, 2\",0,0,0,0,3,,1.5\n");
+  const auto j = nlohmann::json::parse(sequence_json(frames));
+  EXPECT_TRUE(j["frames"][0]["flicker"].is_null());
+  EXPECT_EQ(j["mean"]["flicker"], 1);
+  EXPECT_NE(sequence_svg(frames, "a < b").find("a &lt; b"), std::string::npos);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "ajar/core/error.h"
+#include "ajar/scene/motion.h"
 #include "lights.h"
 
 namespace ajar {
@@ -105,6 +106,37 @@ TEST(Finish, RefusesNonsense) {
   } catch (const Error& e) {
     EXPECT_NE(std::string(e.what()).find("made: pixel (2, 1)"), std::string::npos) << e.what();
   }
+}
+
+// Motion is found where something was and where it is.
+TEST(Motion, IsWhereShapesWereAndAre) {
+  const auto scene_with = [](float x, float radius, float y) {
+    Scene scene;
+    kit::add_mesh(scene, kit::rectangle(placed(1, {2, 1, 1}, {x, 0, 0})));
+    kit::add_shape(scene, ShapeKind::sphere, placed(radius, Vec3(1), {-4, 1, 0}));
+    const uint32_t in_group = kit::add_mesh(scene, kit::icosphere_like());
+    scene.shapes[in_group].group = 0;
+    scene.groups = 1;
+    const Mat4 m = placed(1, Vec3(1), {0, y, 0});
+    scene.instances.push_back({0, m, glm::inverse(m)});
+    finish(scene);
+    return scene;
+  };
+  const Scene rest = scene_with(0, 1, 9);
+  EXPECT_TRUE(find_motion(rest, scene_with(0, 1, 9)).empty());
+  const auto slid = find_motion(rest, scene_with(3, 1, 9));
+  ASSERT_EQ(slid.size(), 1u);
+  EXPECT_LT(slid[0].lo.x, -1.5f);
+  EXPECT_GT(slid[0].hi.x, 4.5f);
+  EXPECT_LT(slid[0].hi.y, 2);
+  EXPECT_EQ(find_motion(rest, scene_with(0, 2, 9)).size(), 1u);
+  const auto lifted = find_motion(rest, scene_with(0, 1, 12));
+  ASSERT_EQ(lifted.size(), 1u);
+  EXPECT_TRUE(lifted[0].lo.y < 9 && lifted[0].hi.y > 12 && lifted[0].lo.y > 5);
+  Scene more = rest;
+  more.shapes.push_back(more.shapes[0]);
+  ASSERT_EQ(find_motion(rest, more).size(), 1u);
+  EXPECT_TRUE(overlap(find_motion(rest, more)[0], {Vec3(1e6f), Vec3(1e6f)}));
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ struct MergeSide {
   double fixed = 0, slope = 0;
 };
 /// The side whose last vertex is at the merge. other and other_before of the end are not read; back turns the density
-/// per solid angle of going back into the area density of the vertex before. (R5)
+/// per solid angle of going back into the area density of the vertex before. (K6)
 MergeSide merge_side(Heuristic h, const End& end, double back, const Shares& shares, Side side);
 /// Weight of the merge; reverse: densities per solid angle of going on to the vertex before on each side. merge is
 /// pi r^2 N times its share.

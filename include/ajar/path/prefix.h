@@ -24,7 +24,7 @@ inline double extend(double share, double raised_ratio, double sum_before) {
   return share + std::min(largest_ratio * largest_ratio, raised_ratio * sum_before);
 }
 
-/// m_i, what merging at a vertex of this density adds to v_i (R4).
+/// m_i, what merging at a vertex of this density adds to v_i (K5).
 inline double merge_at(Heuristic h, double own, double merge) { return raise(h, std::min(largest_ratio, own * merge)); }
 
 }  // namespace ajar

@@ -1,0 +1,148 @@
+// Frames of an animation: whatever fields are carried and whatever numbers frames have in common, each frame is an
+// unbiased image; and fields do not depend on threads.
+#include "ajar/render/sequence.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "ajar/core/error.h"
+#include "ajar/scene/motion.h"
+#include "kit/stage.h"
+#include "measure.h"
+
+namespace ajar {
+namespace {
+
+using namespace kit;
+
+// The usual room with a wall before the lamp, which moves from frame to frame.
+Scene room_at(int frame) {
+  Scene scene = stage(12);
+  add_quad(scene, {-0.8f + 0.3f * float(frame), 0.2f, -0.5f}, {0.9f, 0, 0}, {0, 0.1f, 1},
+           add_diffuse(scene, Rgb(0.7f)));
+  finish(scene);
+  return scene;
+}
+
+SequenceOptions usual() {
+  SequenceOptions s;
+  s.begin = 10, s.teach = 1;
+  return s;
+}
+
+// The last of so many frames, rendered as animations render it.
+Picture last_frame(const RenderOptions& options, const SequenceOptions& sequence, int frames) {
+  std::optional<Carried> carried;
+  Scene before;
+  for (int f = 0;; ++f) {
+    const Scene scene = room_at(f);
+    const Accel accel(scene);
+    const std::vector<Box> moved = carried ? find_motion(before, scene) : std::vector<Box>();
+    std::optional<Fields> fields =
+        teach(scene, accel, options, sequence, carried ? &*carried : nullptr, moved, uint32_t(f), {});
+    carried = Carried{uint32_t(f), std::move(*fields)};
+    if (f + 1 < frames) {
+      before = scene;
+      continue;
+    }
+    RenderOptions image = options;
+    image.seed = image_seed(sequence, options.seed, uint32_t(f));
+    RenderState state = start_with(scene, image, carried->fields);
+    render(scene, accel, image, state, {});
+    EXPECT_EQ(state.stats.rejected, 0u);
+    EXPECT_EQ(state.film.passes, image.spp);
+    EXPECT_EQ(state.learning.fields.generation, carried->fields.generation) << "fields of an image stay as they are";
+    return develop(state.film);
+  }
+}
+
+Estimate frames_of(const char* integrator, uint32_t passes) {
+  RenderOptions options = statistical(integrator);
+  options.spp = passes;
+  std::vector<std::vector<double>> runs;
+  for (uint64_t seed = 1; seed <= 16; ++seed) {
+    options.seed = seed;
+    const Picture p = last_frame(options, usual(), 3);
+    runs.emplace_back(p.pixels.begin(), p.pixels.end());
+  }
+  return estimate(12, 12, std::move(runs));
+}
+
+TEST(Sequence, FramesAreUnbiased) {
+  const Estimate truth = measure(room_at(2), statistical("path"), {.batches = 16, .passes = 400, .seed = 70});
+  expect_same(frames_of("guided-bdpt", 16), truth, "guided-bdpt with carried fields, path");
+  expect_same(frames_of("vpl", 8), truth, "vpl with carried fields, path");
+}
+
+// Energy: in a furnace every pixel is 1 / (1 - albedo), and most of it passes corners, where joins and walks share.
+TEST(Vpl, KeepsEnergyInAFurnace) {
+  Material grey;
+  grey.reflectance = Rgb(0.7f);
+  const Scene scene = furnace(Oven::box, grey);
+  for (const char* integrator : {"vpl", "plain-vpl"}) {
+    const Estimate e = measure(scene, statistical(integrator), {.batches = 4, .passes = 16, .seed = 3});
+    EXPECT_NEAR(mean(e), 1 / 0.3, 0.01 / 0.3) << integrator;
+  }
+}
+
+TEST(Sequence, ImagesNeverDrawTheNumbersThatTaught) {
+  SequenceOptions s;
+  for (const bool numbers : {true, false}) {
+    s.coherence.numbers = numbers;
+    for (uint32_t image = 0; image < 50; ++image) {
+      EXPECT_EQ(image_seed(s, 5, image) == image_seed(s, 5, 0), numbers || image == 0);
+      for (uint32_t teaching = 0; teaching < 50; ++teaching)
+        EXPECT_NE(image_seed(s, 5, image), teaching_seed(5, teaching));
+    }
+  }
+}
+
+// Carried or begun, taught with one thread or more: the same image.
+TEST(Sequence, DoesNotDependOnThreads) {
+  RenderOptions options = statistical("guided-bdpt");
+  options.spp = 2, options.sampler = SamplerKind::sobol, options.threads = 1;
+  const Picture one = last_frame(options, usual(), 2);
+  options.threads = 3;
+  EXPECT_EQ(last_frame(options, usual(), 2).pixels, one.pixels);
+}
+
+TEST(Sequence, CarriedFieldsLearnMore) {
+  const Scene scene = room_at(0);
+  const Accel accel(scene);
+  RenderOptions options = statistical("guided-bdpt");
+  SequenceOptions s = usual();
+  const Fields begun = *teach(scene, accel, options, s, nullptr, {}, 0, {});
+  const Carried carried{0, begun};
+  const auto evidence = [](const Fields& f) {
+    double sum = 0;
+    for (const float w : f.q.weight) sum += double(w);
+    return sum;
+  };
+  s.forget = 0.9f;
+  const double kept = evidence(*teach(scene, accel, options, s, &carried, {}, 1, {}));
+  s.forget = 0.1f;
+  const double forgotten = evidence(*teach(scene, accel, options, s, &carried, {}, 1, {}));
+  EXPECT_GT(kept, 1.05 * forgotten);  // strata that no record reached keep theirs in any case
+  // Where all moved there is hardly more left than with nothing kept.
+  s.forget = 0.9f;
+  const double doubted = evidence(*teach(scene, accel, options, s, &carried, {{Vec3(-9), Vec3(9)}}, 1, {}));
+  EXPECT_LT(doubted, 0.6 * kept);
+}
+
+TEST(Sequence, FilesGiveBackWhatIsCarried) {
+  const Scene scene = room_at(0);
+  const Accel accel(scene);
+  const Carried carried{7, *teach(scene, accel, statistical("guided-bdpt"), usual(), nullptr, {}, 0, {})};
+  const std::string path = testing::TempDir() + "ajar_sequence_test.fields";
+  save_carried(path, "this", carried);
+  const Carried back = load_carried(path, "this");
+  EXPECT_EQ(back.frame, 7u);
+  EXPECT_EQ(back.fields.q.mean, carried.fields.q.mean);
+  EXPECT_EQ(back.fields.w.weight, carried.fields.w.weight);
+  EXPECT_THROW(load_carried(path, "that"), Error);
+  std::remove(path.c_str());
+}
+
+}  // namespace
+}  // namespace ajar
