@@ -361,9 +361,10 @@ void add_render(CLI::App& app) {
       ->check(CLI::IsMember({"recent", "visits"}));
   c->add_option("--train", a->train, "passes that train the fields and are dropped; after them the fields are frozen")
       ->check(CLI::Range(2, 1 << 20));
-  c->add_option("--light-choice", a->light_choice,
-                "of next-event estimation among lights: uniform, power, tree, or learned per cell (default: learned for "
-                "guided integrators, else tree)")
+  c->add_option(
+       "--light-choice", a->light_choice,
+       "of next-event estimation among lights: uniform, power, tree, or learned per cell (default: learned for "
+       "guided integrators, else tree)")
       ->check(CLI::IsMember(listed(light_choice_names)));
   c->add_flag("--no-next-event", a->no_next_event, "lights are found by hitting them alone: path and guided-path");
   c->add_option("--save-fields", a->save_fields, "file to save the learned fields to");

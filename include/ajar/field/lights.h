@@ -45,7 +45,7 @@ struct LightTallies {
 inline constexpr uint32_t most_starts = 512;
 
 struct LightRules {
-  float mix = 0.9f;          ///< share of what was learned in a weight, at most
+  float mix = 0.98f;         ///< share of what was learned in a weight, at most: a sun that is not seen promises much
   float forget = 0.5f;       ///< share of older evidence that is kept
   float divide = 1 / 16.0f;  ///< share of its cut above which an entry is divided
   uint32_t most = 16;        ///< entries of a cut
