@@ -24,7 +24,9 @@ struct Work {
 
 // Shares that make the least noise go with the root of the second moment. What is not known of an entry is taken from
 // all of them.   (V2)
-double strength(const LightEvidence& e, double all) { return std::sqrt((double(e.square) + all) / (double(e.tried) + 1)); }
+double strength(const LightEvidence& e, double all) {
+  return std::sqrt((double(e.square) + all) / (double(e.tried) + 1));
+}
 
 struct Sum {
   double square = 0, hits = 0, tried = 0;
@@ -96,7 +98,8 @@ void append(std::vector<Work>& cut, const LightTree& tree, const LightRules& rul
   LightCut c;
   c.first = uint32_t(to.entries.size()), c.count = uint32_t(cut.size());
   const Sum sum = sum_of(cut);
-  if (sum.tried > 0) c.asks = float(std::clamp(64 * (sum.hits + 1) / sum.tried, double(rules.least_asks), 1.0));  // (V4)
+  if (sum.tried > 0)
+    c.asks = float(std::clamp(64 * (sum.hits + 1) / sum.tried, double(rules.least_asks), 1.0));  // (V4)
   double total = 0, before = 0;
   for (Work& w : cut) {
     const LightNode& n = tree.nodes[w.node];

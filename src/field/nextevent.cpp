@@ -130,11 +130,11 @@ void record_next_event(const Scene& scene, const Guide& guide, const Vec3& p, Tr
   float brought = 0;
   if (arrives > 0) {
     const Receiver at = receiver_at(guide, p);
-    const float promised = importance(scene.light_tree, v.entries[entry].node, at);
-    const float below = choice_pdf(scene.light_tree, v.entries[entry].node, at, place);
-    // Of the density, the choice of the entry is taken out.
-    const float chosen = light_pdf(scene, guide, p, place) / below;
-    brought = promised > 0 && below > 0 ? pi * arrives * chosen / promised : 0;  // (V1)
+    Chances c;  // what the entry promises cancels against its chance
+    const float promised = cut->count > 1 ? chances(scene.light_tree, v, *cut, at, c)
+                                          : importance(scene.light_tree, v.entries[entry].node, at);
+    const float weight = cut->count > 1 ? v.entries[entry].weight : 1;
+    brought = promised > 0 ? pi * arrives * cut->asks * weight / promised : 0;  // (V1)
   }
   record(v, training.lights, entry, brought);
 }

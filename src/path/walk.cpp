@@ -53,7 +53,8 @@ bool start_light(const Scene& scene, const WalkOptions& options, Sampler& sample
   const float u_choice = scene.light_tree.pieces.size() > 1 ? sampler.at(choice).x : 0;
   const Vec2 u_position = sampler.next2(), u_direction = sampler.next2();
   EmissionSample& e = walk.start;
-  if (!sample_emission(scene, options.fields, u_choice, u_position, u_direction, e) || is_black(e.radiance)) return false;
+  if (!sample_emission(scene, options.fields, u_choice, u_position, u_direction, e) || is_black(e.radiance))
+    return false;
   const LightPoint& point = e.point;
   const bool place = point.infinite || point.delta_position;
   const float cosine = place ? 1 : std::abs(glm::dot(point.n, e.direction));
@@ -108,8 +109,8 @@ bool step(const Scene& scene, const Accel& accel, const WalkOptions& options, Su
   if (subpath.n == 2 && walk.side == Side::camera) v.own = raster_factor(scene.camera, before.p, v.p) * cosine;
   make_guide(scene, options.fields, walk.side, surface, -walk.d, v.guide);
   if (subpath.n == 2 && walk.side == Side::light)
-    walk.first_share = direct_share(scene, v, before.point, -walk.d, v.distance2,
-                                    {walk.start.pdf_position, walk.start.pdf_direction});
+    walk.first_share =
+        direct_share(scene, v, before.point, -walk.d, v.distance2, {walk.start.pdf_position, walk.start.pdf_direction});
   return true;
 }
 

@@ -68,8 +68,8 @@ float environment_pdf(const Environment& e, const Vec3& w) {
 
 namespace {
 
-// A tent around a texel's centre, folded at the poles where rows are repeated outwards: the sum of tents is the bilinear
-// interpolation of the texels' weights.
+// A tent around a texel's centre, folded at the poles where rows are repeated outwards: the sum of tents is the
+// bilinear interpolation of the texels' weights.
 Vec2 around(const Environment& e, const Distribution2D::Cell& c, const Vec2& u) {
   const float w = float(e.table.width), h = float(e.table.height);
   const float x = float(c.x) + 0.5f + tent(u.x), y = float(c.y) + 0.5f + tent(u.y);

@@ -12,8 +12,8 @@ namespace {
 
 float cos_within(double x) { return float(std::clamp(x, -1.0, 1.0)); }
 
-// The cone that holds the directions on a grid over a rectangle of texels, with half a texel around it for the tents that
-// reach out of it. at: direction of a point of the map, in texels.
+// The cone that holds the directions on a grid over a rectangle of texels, with half a texel around it for the tents
+// that reach out of it. at: direction of a point of the map, in texels.
 template <class At>
 void set_cone(const Vec2& low, const Vec2& high, const At& at, LightBounds& b) {
   constexpr int n = 8;
@@ -148,8 +148,12 @@ void add_infinite(Gatherer& g, uint32_t id, double watts) {
     const Tile& tile = t.tiles[k];
     const Vec2 size(t.width, t.height);
     if (even) {
-      set_cone(Vec2(tile.low), Vec2(tile.high), [&](const Vec2& at) { return to_sphere({at.y / size.y, at.x / size.x}); },
-               b);
+      set_cone(
+          Vec2(tile.low), Vec2(tile.high),
+          [&](const Vec2& at) {
+            return to_sphere({at.y / size.y, at.x / size.x});
+          },
+          b);
       g.add(id, k, b, watts / double(t.tiles.size()), true);
       continue;
     }
@@ -184,7 +188,8 @@ void add_area(Gatherer& g, uint32_t id, double watts) {
     b.axis = r.normal;
   } else if (shape.kind == ShapeKind::mesh) {
     const Mesh& mesh = g.scene.meshes[shape.mesh];
-    const bool divided = mesh.triangles.size() >= least_triangles && g.out.size() + mesh.triangles.size() <= most_pieces;
+    const bool divided =
+        mesh.triangles.size() >= least_triangles && g.out.size() + mesh.triangles.size() <= most_pieces;
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
       if (divided) b = {}, b.cos_reach = 0;
       for (int k = 0; k < 3; ++k) {
@@ -193,8 +198,8 @@ void add_area(Gatherer& g, uint32_t id, double watts) {
       }
       b.axis = mesh.faces[i].ng;
       if (divided)
-        g.add(id, uint32_t(i), b, mesh.total_area > 0 ? watts * double(triangle_area(mesh, uint32_t(i))) / mesh.total_area : 0,
-              false);
+        g.add(id, uint32_t(i), b,
+              mesh.total_area > 0 ? watts * double(triangle_area(mesh, uint32_t(i))) / mesh.total_area : 0, false);
     }
     if (divided) return;
     b.cos_spread = mesh.triangles.size() > 1 ? -1 : 1;
@@ -204,7 +209,8 @@ void add_area(Gatherer& g, uint32_t id, double watts) {
     const float across = std::sqrt(std::max(length2(x), length2(y))) * 1.0001f;
     float pdf;
     if (shape.kind == ShapeKind::disk)
-      set_ball(o, std::sqrt(length2(x) + length2(y)), b), b.axis = sample_area(g.scene, light.shape, Vec2(0.5f), pdf).ng;
+      set_ball(o, std::sqrt(length2(x) + length2(y)), b),
+          b.axis = sample_area(g.scene, light.shape, Vec2(0.5f), pdf).ng;
     else if (shape.kind == ShapeKind::sphere)
       set_ball(o, across, b), b.cos_spread = -1;
     else

@@ -13,9 +13,9 @@ namespace {
 double solid_measure(const LightBounds& b) {
   const double spread = std::acos(double(b.cos_spread)), reach = std::acos(double(b.cos_reach));
   const double all = std::min(spread + reach, std::numbers::pi);
-  return 2 * std::numbers::pi * (1 - std::cos(spread)) +
-         std::numbers::pi / 2 * (2 * all * std::sin(spread) - std::cos(spread - 2 * all) -
-                                 2 * spread * std::sin(spread) + std::cos(spread));
+  return 2 * std::numbers::pi * (1 - std::cos(spread)) + std::numbers::pi / 2 *
+                                                             (2 * all * std::sin(spread) - std::cos(spread - 2 * all) -
+                                                              2 * spread * std::sin(spread) + std::cos(spread));
 }
 
 double surface(const LightBounds& b) {
@@ -46,8 +46,9 @@ size_t divide(Builder& b, size_t from, size_t to) {
     const size_t middle = (from + to) / 2;
     std::nth_element(at(from), at(middle), at(to), [&](const BoundedPiece& p, const BoundedPiece& q) {
       const float x = p.bounds.low[axis] + p.bounds.high[axis], y = q.bounds.low[axis] + q.bounds.high[axis];
-      return x != y ? x < y
-                    : p.piece.light != q.piece.light ? p.piece.light < q.piece.light : p.piece.part < q.piece.part;
+      return x != y                           ? x < y
+             : p.piece.light != q.piece.light ? p.piece.light < q.piece.light
+                                              : p.piece.part < q.piece.part;
     });
     return middle;
   };
@@ -69,12 +70,11 @@ size_t divide(Builder& b, size_t from, size_t to) {
     if (below.weight > 0 && above[k].weight > 0 && c < least) least = c, best = k;
   }
   if (best < 0) return half();
-  const auto middle = std::stable_partition(b.pieces.begin() + ptrdiff_t(from), b.pieces.begin() + ptrdiff_t(to),
-                                            [&](const BoundedPiece& p) {
-                                              const float m = 0.5f * (p.bounds.low[axis] + p.bounds.high[axis]);
-                                              return std::clamp(int((m - low[axis]) / size[axis] * bins), 0,
-                                                                bins - 1) <= best;
-                                            });
+  const auto middle = std::stable_partition(
+      b.pieces.begin() + ptrdiff_t(from), b.pieces.begin() + ptrdiff_t(to), [&](const BoundedPiece& p) {
+        const float m = 0.5f * (p.bounds.low[axis] + p.bounds.high[axis]);
+        return std::clamp(int((m - low[axis]) / size[axis] * bins), 0, bins - 1) <= best;
+      });
   const size_t at = size_t(middle - b.pieces.begin());
   return at > from && at < to ? at : half();
 }
@@ -171,7 +171,8 @@ float importance(const LightTree& tree, uint32_t node, const Receiver& at) {
 LightTree make_light_tree(const Scene& scene, LightChoice choice) {
   LightTree t;
   t.choice = choice;
-  // Lamps send watts / pi to the steradian where they shine most; from infinity, watts are spread over the scene's disk.
+  // Lamps send watts / pi to the steradian where they shine most; from infinity, watts are spread over the scene's
+  // disk.
   t.infinity_scale = float(1 / (double(scene.radius) * double(scene.radius)));
   make_tilings(scene, t);
   std::vector<BoundedPiece> pieces = light_pieces(scene, t);

@@ -1,5 +1,5 @@
-// The light tree: probabilities that add up and are those of what is drawn, nothing left out that shines, tiles, bounds of
-// memory, and lights of all extremes.
+// The light tree: probabilities that add up and are those of what is drawn, nothing left out that shines, tiles, bounds
+// of memory, and lights of all extremes.
 #include <gtest/gtest.h>
 
 #include "ajar/core/error.h"

@@ -16,8 +16,8 @@ bool sample_emission(const Scene& scene, const Fields* fields, float u_choice, c
                      const Vec2& u_direction, EmissionSample& out);
 /// The same densities; for infinite lights point.p is any point of the ray.
 EmissionPdf pdf_emission(const Scene& scene, const Fields* fields, const LightPoint& point, const Vec3& direction);
-/// What a light subpath that started here is expected to bring (Promise of its first vertex, of all that was emitted and
-/// of one watt; 0 where it hit nothing).
+/// What a light subpath that started here is expected to bring (Promise of its first vertex, of all that was emitted
+/// and of one watt; 0 where it hit nothing).
 void record_start(const Scene& scene, const Fields& fields, Training& training, const EmissionSample& start,
                   float brings, float per_watt);
 

@@ -48,7 +48,7 @@ struct LightRules {
   float mix = 0.9f;          ///< share of what was learned in a weight, at most
   float forget = 0.5f;       ///< share of older evidence that is kept
   float divide = 1 / 16.0f;  ///< share of its cut above which an entry is divided
-  uint32_t most = 16;        ///< entries of a cut
+  uint32_t most = 32;        ///< entries of a cut
   float least_asks = 1;      ///< of cells that see no light
   bool by_power = false;     ///< entries promise their power, whoever asks
 };

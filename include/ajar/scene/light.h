@@ -26,8 +26,8 @@ struct Rectangle {
 
 struct Light {
   LightKind kind = LightKind::area;
-  Slot radiance{1.0f};  ///< area, constant, sun: radiance [W/(m^2 sr)]; directional: irradiance on a perpendicular plane;
-                        ///< point, spot: intensity [W/sr]; projector: the same along its axis, see plane
+  Slot radiance{1.0f};  ///< area, constant, sun: radiance [W/(m^2 sr)]; directional: irradiance on a perpendicular
+                        ///< plane; point, spot: intensity [W/sr]; projector: the same along its axis, see plane
   float sampling_weight = 1;    ///< the user's factor on the chance of being chosen
   uint32_t shape = none;        ///< area: index into Scene::shapes
   uint32_t environment = none;  ///< envmap: index into Scene::environments
@@ -44,8 +44,8 @@ struct Light {
   Rectangle rectangle;          ///< area: untextured rectangles; made by finish
 };
 
-/// A point of a light. For infinite lights n is the direction *of travel* of the light, from infinity into the scene, and
-/// p any point of its ray.
+/// A point of a light. For infinite lights n is the direction *of travel* of the light, from infinity into the scene,
+/// and p any point of its ray.
 struct LightPoint {
   Vec3 p{0};
   float error = 0;

@@ -1,6 +1,6 @@
 // Enters: the scene's lights.
-// Leaves: the pieces that light is drawn from (lamps, triangles of lamps, tiles of environments) and a tree over them, by
-// which one is chosen for a point in logarithmic time (docs/method.md, "Many lights").
+// Leaves: the pieces that light is drawn from (lamps, triangles of lamps, tiles of environments) and a tree over them,
+// by which one is chosen for a point in logarithmic time (docs/method.md, "Many lights").
 #pragma once
 
 #include <vector>
@@ -28,8 +28,8 @@ struct Tile {
   Distribution rows;
 };
 
-/// The tiles of one infinite light that is not a single direction: a kd-tree over its texels. A constant light has a grid
-/// of texels of its own: equal in solid angle.
+/// The tiles of one infinite light that is not a single direction: a kd-tree over its texels. A constant light has a
+/// grid of texels of its own: equal in solid angle.
 struct Tiling {
   struct Cut {
     int axis = -1;  ///< 0: left of at, 1: above at; -1: a tile
@@ -48,16 +48,16 @@ struct LightNode {
   float radius = 0;
   Vec3 axis{0, 0, 1};
   float cos_spread = -1, sin_spread = 0;  ///< of the cone about the axis that holds all normals
-  float cos_reach = -1;   ///< of how far around a normal light goes
-  float weight = 0;       ///< by which it is chosen, all else equal
-  uint32_t first = 0, last = 0;  ///< its pieces, in the tree's order
-  uint32_t left = 0;             ///< children left and left + 1; 0: a leaf, of one piece
+  float cos_reach = -1;                   ///< of how far around a normal light goes
+  float weight = 0;                       ///< by which it is chosen, all else equal
+  uint32_t first = 0, last = 0;           ///< its pieces, in the tree's order
+  uint32_t left = 0;                      ///< children left and left + 1; 0: a leaf, of one piece
   bool infinite = false;
 };
 
 struct LightTree {
   LightChoice choice = LightChoice::tree;
-  float infinity_scale = 1;  ///< of the importance of what is infinite far away, against that of lamps
+  float infinity_scale = 1;           ///< of the importance of what is infinite far away, against that of lamps
   std::vector<LightNode> nodes;       ///< node 0 is the root; empty: nothing shines
   std::vector<LightPiece> pieces;     ///< in the order of the leaves; those of weight zero are left out
   std::vector<double> power_before;   ///< watts of the pieces before each, and of all: light subpaths start by it

@@ -5,7 +5,8 @@
 namespace ajar {
 namespace {
 
-constexpr const char* supported = "supported: area, envmap, constant, point, spot, directional, projector, sky, sun, sunsky";
+constexpr const char* supported =
+    "supported: area, envmap, constant, point, spot, directional, projector, sky, sun, sunsky";
 
 DVec3 checked_direction(const Loader& loader, const Node& node, const DVec3& d) {
   const double length = glm::length(d);
@@ -137,9 +138,9 @@ struct Entry {
   const char* type;
   void (*read)(Params&);
 };
-constexpr Entry entries[] = {{"constant", constant}, {"envmap", envmap},           {"point", point},
-                             {"spot", spot},         {"directional", directional}, {"projector", projector},
-                             {"sky", sky},           {"sun", sun},                 {"sunsky", sunsky}};
+constexpr Entry entries[] = {
+    {"constant", constant},   {"envmap", envmap}, {"point", point}, {"spot", spot},    {"directional", directional},
+    {"projector", projector}, {"sky", sky},       {"sun", sun},     {"sunsky", sunsky}};
 
 }  // namespace
 

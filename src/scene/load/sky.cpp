@@ -23,8 +23,8 @@ DVec3 direction_of(double zenith, double azimuth) {
 void place_sun(Params& p, Daylight& day) {
   const int year = integer(p, "year", 2010, 1900, 2200), month = integer(p, "month", 7, 1, 12),
             date = integer(p, "day", 10, 1, 31);
-  const double hours = number(p, "hour", 15) + number(p, "minute", 0) / 60 + number(p, "second", 0) / 3600 -
-                       number(p, "timezone", 9);
+  const double hours =
+      number(p, "hour", 15) + number(p, "minute", 0) / 60 + number(p, "second", 0) / 3600 - number(p, "timezone", 9);
   const double latitude = glm::radians(number(p, "latitude", 35.6894)), longitude = number(p, "longitude", 139.6917);
   const int late = (month - 14) / 12;
   const int julian = (1461 * (year + 4800 + late)) / 4 + (367 * (month - 2 - 12 * late)) / 12 -
@@ -41,8 +41,8 @@ void place_sun(Params& p, Daylight& day) {
   const double angle = sidereal - ascension;
   const double zenith = std::acos(std::cos(latitude) * std::cos(angle) * std::cos(declination) +
                                   std::sin(declination) * std::sin(latitude));
-  day.azimuth = std::atan2(-std::sin(angle), std::tan(declination) * std::cos(latitude) -
-                                                 std::sin(latitude) * std::cos(angle));
+  day.azimuth =
+      std::atan2(-std::sin(angle), std::tan(declination) * std::cos(latitude) - std::sin(latitude) * std::cos(angle));
   day.zenith = zenith + 6371.01 / 149597890 * std::sin(zenith);  // parallax
   day.sun = direction_of(day.zenith, day.azimuth);
 }
@@ -68,7 +68,8 @@ struct Perez {
   double a, b, c, d, e;
 };
 double perez(const Perez& k, double cos_zenith, double gamma) {
-  return (1 + k.a * std::exp(k.b / cos_zenith)) * (1 + k.c * std::exp(k.d * gamma) + k.e * std::cos(gamma) * std::cos(gamma));
+  return (1 + k.a * std::exp(k.b / cos_zenith)) *
+         (1 + k.c * std::exp(k.d * gamma) + k.e * std::cos(gamma) * std::cos(gamma));
 }
 
 // Luminance and chromaticity over the sky: zenith values and distributions, appendix A.2 of the paper.
@@ -80,23 +81,22 @@ struct Sky {
 
 Sky make_sky(const Daylight& day) {
   const double t = day.turbidity, s = day.zenith;
-  Sky sky{day,
-          {{0.1787 * t - 1.4630, -0.3554 * t + 0.4275, -0.0227 * t + 5.3251, 0.1206 * t - 2.5771, -0.0670 * t + 0.3703},
-           {-0.0193 * t - 0.2592, -0.0665 * t + 0.0008, -0.0004 * t + 0.2125, -0.0641 * t - 0.8989, -0.0033 * t + 0.0452},
-           {-0.0167 * t - 0.2608, -0.0950 * t + 0.0092, -0.0079 * t + 0.2102, -0.0441 * t - 1.6537, -0.0109 * t + 0.0529}},
-          {}};
+  Sky sky{
+      day,
+      {{0.1787 * t - 1.4630, -0.3554 * t + 0.4275, -0.0227 * t + 5.3251, 0.1206 * t - 2.5771, -0.0670 * t + 0.3703},
+       {-0.0193 * t - 0.2592, -0.0665 * t + 0.0008, -0.0004 * t + 0.2125, -0.0641 * t - 0.8989, -0.0033 * t + 0.0452},
+       {-0.0167 * t - 0.2608, -0.0950 * t + 0.0092, -0.0079 * t + 0.2102, -0.0441 * t - 1.6537, -0.0109 * t + 0.0529}},
+      {}};
   const double chi = (4.0 / 9 - t / 120) * (std::numbers::pi - 2 * s);
   const double luminance = std::max((4.0453 * t - 4.9710) * std::tan(chi) - 0.2155 * t + 2.4192, 0.0);  // kcd/m^2
-  const auto chromaticity = [&](const double (&m)[3][4]) {
+  const auto chromaticity = [&](const double(&m)[3][4]) {
     const auto row = [&](int i) { return ((m[i][0] * s + m[i][1]) * s + m[i][2]) * s + m[i][3]; };
     return (row(0) * t + row(1)) * t + row(2);
   };
-  const double x = chromaticity({{0.00166, -0.00375, 0.00209, 0},
-                                 {-0.02903, 0.06377, -0.03202, 0.00394},
-                                 {0.11693, -0.21196, 0.06052, 0.25886}});
-  const double y = chromaticity({{0.00275, -0.00610, 0.00317, 0},
-                                 {-0.04214, 0.08970, -0.04153, 0.00516},
-                                 {0.15346, -0.26756, 0.06670, 0.26688}});
+  const double x = chromaticity(
+      {{0.00166, -0.00375, 0.00209, 0}, {-0.02903, 0.06377, -0.03202, 0.00394}, {0.11693, -0.21196, 0.06052, 0.25886}});
+  const double y = chromaticity(
+      {{0.00275, -0.00610, 0.00317, 0}, {-0.04214, 0.08970, -0.04153, 0.00516}, {0.15346, -0.26756, 0.06670, 0.26688}});
   const double zenith[] = {luminance, x, y};
   for (int i = 0; i < 3; ++i) sky.scale[i] = zenith[i] / perez(sky.of[i], 1, s);
   return sky;
@@ -120,8 +120,8 @@ Rgb radiance(const Sky& sky, const DVec3& w) {
 }
 
 // Absorption of ozone [1/cm], every 10 nm from 450 (Iqbal 1983, as in appendix A.1).
-constexpr double ozone[] = {3,   6,   9,   14,  21,  30,  40, 48, 63, 75, 85, 103, 120,
-                            120, 115, 125, 120, 105, 90,  79, 67, 57, 48, 36, 28,  23};
+constexpr double ozone[] = {3,   6,   9,   14,  21,  30, 40, 48, 63, 75, 85, 103, 120,
+                            120, 115, 125, 120, 105, 90, 79, 67, 57, 48, 36, 28,  23};
 
 // Radiance of the sun's disc behind the air: Planck's law at 5778 K, thinned as in appendix A.1 by Rayleigh scattering,
 // aerosols and ozone. Bands of other gases and of water lie at the edge of the visible, and are left out.
@@ -132,9 +132,9 @@ Rgb sun_radiance(const Daylight& day) {
   std::vector<std::pair<double, double>> list;
   for (int nm = 380; nm <= 780; nm += 10) {
     const double micro = nm * 1e-3, metre = nm * 1e-9;
-    const double planck =
-        2 * 6.62607015e-34 * 2.99792458e8 * 2.99792458e8 / std::pow(metre, 5) /
-        (std::exp(6.62607015e-34 * 2.99792458e8 / (metre * 1.380649e-23 * 5778)) - 1) * 1e-9;  // per nm
+    const double planck = 2 * 6.62607015e-34 * 2.99792458e8 * 2.99792458e8 / std::pow(metre, 5) /
+                          (std::exp(6.62607015e-34 * 2.99792458e8 / (metre * 1.380649e-23 * 5778)) - 1) *
+                          1e-9;  // per nm
     const int k = (nm - 450) / 10;
     const double absorbed = nm >= 450 && k < int(std::size(ozone)) ? ozone[k] * 1e-3 : 0;
     const double depth = 0.008735 * std::pow(micro, -4.08) + beta * std::pow(micro, -1.3) + 0.35 * absorbed;
@@ -158,8 +158,8 @@ void add_sky(Params& p, const Daylight& day, double scale, const Mat4& turn, flo
   image.floats.resize(size_t(width) * size_t(height) * 3);
   parallel_for(height, [&](int y) {
     for (int x = 0; x < width; ++x) {
-      const Rgb c = radiance(sky, direction_of(std::numbers::pi * (y + 0.5) / height,
-                                               2 * std::numbers::pi * (x + 0.5) / width));
+      const Rgb c =
+          radiance(sky, direction_of(std::numbers::pi * (y + 0.5) / height, 2 * std::numbers::pi * (x + 0.5) / width));
       for (int k = 0; k < 3; ++k) image.floats[(size_t(y) * size_t(width) + size_t(x)) * 3 + size_t(k)] = c[k];
     }
   });
@@ -177,7 +177,8 @@ void add_sky(Params& p, const Daylight& day, double scale, const Mat4& turn, flo
 
 void add_sun(Params& p, const Daylight& day, double scale, const Mat4& turn, float weight) {
   const double wide = positive(p, "sun_radius_scale", 1), half = glm::radians(0.5358 / 2) * wide;
-  if (half > glm::radians(60.0)) fail(p.loader, p.node, "sun_radius_scale should leave the sun smaller than 120 degrees");
+  if (half > glm::radians(60.0))
+    fail(p.loader, p.node, "sun_radius_scale should leave the sun smaller than 120 degrees");
   Light light;
   light.kind = LightKind::sun;
   light.sampling_weight = weight;
@@ -195,7 +196,8 @@ void load_daylight(Params& p, bool with_sky, bool with_sun) {
   const Daylight day = daylight(p);
   const double weight = number(p, "sampling_weight", 1), scale = scale_of(p, "scale");
   if (weight < 0) fail(p.loader, p.node, "sampling_weight should not be negative");
-  const double sky = with_sky && with_sun ? scale_of(p, "sky_scale") : 1, sun = with_sky && with_sun ? scale_of(p, "sun_scale") : 1;
+  const double sky = with_sky && with_sun ? scale_of(p, "sky_scale") : 1,
+               sun = with_sky && with_sun ? scale_of(p, "sun_scale") : 1;
   const Mat4 turn = orientation(to_world(p));
   if (with_sky) add_sky(p, day, scale * sky, turn, float(weight));
   if (with_sun) add_sun(p, day, scale * sun, turn, float(weight));

@@ -132,8 +132,37 @@ TEST(Emitters, Directional) {
   EXPECT_SAYS(error_of(emitter("directional", "<vector name='direction' value='0, 0, 0'/>")), "zero vector");
 }
 
+TEST(Emitters, SunAndSky) {
+  const std::string high = "<vector name='sunDirection' value='0 1 1'/>";
+  const Scene both = load_inside(emitter("sunsky", high + "<float name='skyScale' value='2'/>"));
+  ASSERT_EQ(both.lights.size(), 2u);
+  EXPECT_EQ(both.lights[0].kind, LightKind::envmap);
+  EXPECT_EQ(both.lights[1].kind, LightKind::sun);
+  EXPECT_RGB(both.lights[1].direction, 0, -std::sqrt(0.5f), -std::sqrt(0.5f), 1e-5);
+  // Of one size without the scale: across the beam the sun gives somewhat more than the whole sky does.
+  EXPECT_GT(power(both, 1), 0.5f * power(both, 0));
+  EXPECT_LT(power(both, 1), 5 * power(both, 0));
+  EXPECT_NEAR(power(both, 0) / power(load_inside(emitter("sky", high)), 0), 2, 1e-3);
+  // A larger disc, as much light.
+  const Scene wide = load_inside(emitter("sun", high + "<float name='sunRadiusScale' value='10'/>"));
+  EXPECT_NEAR(power(wide, 0) / power(load_inside(emitter("sun", high)), 0), 1, 1e-3);
+  // Low suns are redder.
+  const Rgb noon = read("sun", "<vector name='sunDirection' value='0 1 0'/>").radiance.value,
+            evening = read("sun", "<vector name='sunDirection' value='1 0.1 0'/>").radiance.value;
+  EXPECT_GT(evening.x / evening.z, 2 * noon.x / noon.z);
+  // Midsummer noon in Oslo: 53.5 degrees high, in the south (+z).
+  const Light oslo = read("sun",
+                          "<integer name='month' value='6'/><integer name='day' value='21'/><float name='hour' "
+                          "value='12'/><float name='minute' value='19'/><float name='timezone' value='1'/><float "
+                          "name='latitude' value='59.91'/><float name='longitude' value='10.75'/>");
+  EXPECT_NEAR(-oslo.direction.y, std::sin(glm::radians(53.5f)), 0.01f);
+  EXPECT_GT(-oslo.direction.z, 0.55f);
+  EXPECT_SAYS(error_of(emitter("sunsky", "<vector name='sunDirection' value='0 -1 0'/>")), "below the horizon");
+  EXPECT_SAYS(error_of(emitter("sky", high + "<float name='turbidity' value='0'/>")), "turbidity");
+}
+
 TEST(Emitters, UnknownOnes) {
-  for (const char* type : {"sunsky", "sun", "sky", "collimated", "ies"}) {
+  for (const char* type : {"collimated", "ies"}) {
     EXPECT_SAYS(error_of(emitter(type)), "unknown emitter; supported: area, envmap");
     EXPECT_TRUE(load_inside(emitter(type), lenient()).lights.empty());
   }
