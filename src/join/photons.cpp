@@ -122,7 +122,7 @@ Buckets buckets_near(const PhotonMap& map, const Vec3& p, float radius) {
   // No photon within reach has a radius that differs by more: distances from the eye do not.
   const float change = map.merging.per_distance * radius * 1.001f;
   const int low = level_of(std::max(radius - change, map.merging.least)), high = level_of(radius + change);
-  for (int level = low; level <= std::min(high, low + 1); ++level) {
+  for (int level = low; level <= high; ++level) {
     const glm::ivec3 from = cell_of(p - radius, level), to = cell_of(p + radius, level);
     for (int z = from.z; z <= to.z; ++z)
       for (int y = from.y; y <= to.y; ++y)

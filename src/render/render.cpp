@@ -220,7 +220,7 @@ Merging merging_of(const Scene& scene, const RenderOptions& options, const Film&
   if (camera.kind == CameraKind::orthographic)
     m.least = m.most = std::min(pixels * pixel, m.most);
   else
-    m.per_distance = std::min(pixels * pixel, 0.5f);
+    m.per_distance = std::min(pixels * pixel, steepest_radius);
   return m;
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <random>
+#include <tuple>
 
 namespace ajar {
 namespace {
@@ -45,7 +46,7 @@ void expect_all(int n, const Merging& merging) {
   const Photons photons = scatter_photons(n, uint64_t(n) + 1);
   const PhotonMap map = map_of(photons, merging);
   ASSERT_EQ(map.photons.size(), photons.size());
-  const auto less = [](const Vec3& a, const Vec3& b) { return a.x < b.x; };
+  const auto less = [](const Vec3& a, const Vec3& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); };
   size_t all = 0;
   for (const Photon& at : scatter_photons(300, 99)) {
     const float radius = merge_radius(merging, at.p);
@@ -65,12 +66,13 @@ TEST(Photons, NoneAreFoundAmongNone) { expect_all(0, widening); }
 TEST(Photons, One) { expect_all(1, widening); }
 TEST(Photons, Two) { expect_all(2, widening); }
 TEST(Photons, Many) { expect_all(20000, widening); }
+TEST(Photons, ManyWhereTheRadiusIsSteep) { expect_all(20000, {100, widening.eye, steepest_radius, 1e-4f, 2, 1}); }
 TEST(Photons, ManyWithinOneRadius) { expect_all(3000, {100, Vec3(0), 0, 0.3f, 0.3f, 1}); }
 
 TEST(Photons, AtOnePlaceAllAreFound) {
   Photons photons(1000);
   for (Photon& p : photons) p.p = Vec3(0.25f);
-  EXPECT_EQ(found(map_of(photons, widening), Vec3(0.25f), 1e-3f).size(), 1000u);
+  EXPECT_EQ(found(map_of(photons, widening), Vec3(0.25f), merge_radius(widening, Vec3(0.25f))).size(), 1000u);
 }
 
 TEST(Photons, ForgetsThoseBefore) {

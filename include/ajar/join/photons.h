@@ -37,9 +37,10 @@ void add_photons(Photons& photons, const Subpath& light, Heuristic h, double inn
 /// Puts all into the map, which forgets those that it held. Within a cell they keep their order.
 void fill(PhotonMap& map, const Merging& merging, const std::vector<const Photons*>& lists);
 
-/// Buckets that hold all photons within the radius of a place, each once.
+/// Buckets that hold all photons within the radius of a place, each once: of cells of two levels at most, 27 of the
+/// finer and 8 of the coarser one.
 struct Buckets {
-  std::array<uint32_t, 32> of;
+  std::array<uint32_t, 35> of;
   int n = 0;
 };
 Buckets buckets_near(const PhotonMap& map, const Vec3& p, float radius);

@@ -25,10 +25,13 @@ struct Counters {
 struct Merging {
   double paths = 0;  ///< light subpaths that each camera vertex is merged with; 0: no merging
   Vec3 eye{0};
-  float per_distance = 0;     ///< radius over distance from the eye
+  float per_distance = 0;     ///< radius over distance from the eye, steepest_radius at most
   float least = 0, most = 0;  ///< radius [m]
   double inner = 1;           ///< Shares::merge_inner (join/mis.h)
 };
+
+/// Radii that change faster would need light vertices of more than two sizes at once (join/photons.h).
+inline constexpr float steepest_radius = 0.25f;
 
 inline float merge_radius(const Merging& m, const Vec3& p) {
   return std::clamp(m.per_distance * std::sqrt(length2(p - m.eye)), m.least, m.most);
