@@ -24,7 +24,7 @@ std::string describe(const Plan& plan) {
                        "time to equal error");
     for (const Trial& t : plan.trials)
       out += fmt::format("  {:<12} {:>6} {:>10.2f} {:>14.3g} {:>22.2f}\n", t.integrator, t.passes, t.cost,
-                         t.error + t.passes * t.unseen, t.price() / cheapest(plan));
+                         t.error + t.unseen, t.price() / cheapest(plan));
   }
   out += fmt::format("  {:<16} {:<4} {}\n", "part", "on", "why");
   for (const Part& p : plan.parts) out += fmt::format("  {:<16} {:<4} {}\n", p.name, p.on ? "yes" : "no", p.why);

@@ -25,7 +25,7 @@ constexpr Candidate candidates[] = {{"path", 8, 0.23, 2, false, false},
                                     {"guided-path", 16, 0.38, 5, false, true},
                                     {"bdpt", 8, 0.225, 6.5, true, false},
                                     {"guided-bdpt", 16, 0.46, 10, true, true}};
-constexpr double least_pixels = 900;  // below, a pilot says little
+constexpr double least_pixels = 2000;  // below, a pilot says little
 constexpr double hysteresis = 0.9;
 constexpr double still_to_learn = 0.75;  // of a guided integrator's time, where a sample is mostly noise: see choose
 constexpr int block = 8;                 // pixels
@@ -81,12 +81,12 @@ double mean_of(const Film& film) {
   return sum / double(film.pixels()) / std::max(film.passes, 1u);
 }
 
-// Without the worst pixels, so that a firefly more or less does not decide; but as far as these hold the light that was
-// seen, they are what the error is about: a caustic that is all fireflies must not look like little noise.
+// Between the error without the worst pixels, which a firefly more or less does not decide, and the error with them so
+// far as they hold the light that was seen: a caustic that is all fireflies must not look like little noise.
 double error_of_pass(const Film& film) {
   const ErrorEstimate e = estimate_error(film);
   if (!(e.relmse < infinity)) return infinity;
-  return std::lerp(e.relmse_trimmed, e.relmse, e.trimmed_light) * film.passes;
+  return std::sqrt(e.relmse_trimmed * std::lerp(e.relmse_trimmed, e.relmse, e.trimmed_light)) * film.passes;
 }
 
 // Errors are relative to the image as it would be looked at: exposed to a mean of a fifth, by whoever saw most.
@@ -104,25 +104,38 @@ void expose(std::vector<Seen>& seen) {
 }
 
 struct Block {
-  double mean = 0, variance = 0;  // of the mean, by the film's halves
+  double mean = 0, variance = 0;  // of the mean, from the halves of its pixels
+  double pixels = 0;
 };
 
-std::vector<Block> blocks_of(const Film& film) {
+Block block_at(const Film& film, int x0, int y0) {
   const double n = film.passes, a = (film.passes + 1) / 2, b = film.passes / 2;
-  std::vector<Block> out;
-  for (int y0 = 0; y0 < film.height; y0 += block)
-    for (int x0 = 0; x0 < film.width; x0 += block) {
-      double half = 0, all = 0, count = 0;
-      for (int y = y0; y < std::min(y0 + block, film.height); ++y)
-        for (int x = x0; x < std::min(x0 + block, film.width); ++x, ++count) {
-          const size_t i = size_t(y) * size_t(film.width) + size_t(x);
-          const glm::dvec3 sum = film.camera_sum[i] + (film.splats ? film.splat_sum[i] : glm::dvec3(0));
-          all += luminance(Rgb(sum)), half += luminance(Rgb(film.half_sum[i]));
-        }
-      const double difference = (half / a - (all - half) / b) / count;
-      out.push_back({all / n / count, difference * difference * a * b / (n * n)});
+  Block out;
+  for (int y = y0; y < std::min(y0 + block, film.height); ++y)
+    for (int x = x0; x < std::min(x0 + block, film.width); ++x, ++out.pixels) {
+      const size_t i = size_t(y) * size_t(film.width) + size_t(x);
+      const glm::dvec3 sum = film.camera_sum[i] + (film.splats ? film.splat_sum[i] : glm::dvec3(0));
+      const double all = luminance(Rgb(sum)), half = luminance(Rgb(film.half_sum[i]));
+      out.mean += all / n;
+      out.variance += sqr(half / a - (all - half) / b) * a * b / (n * n);
     }
+  out.mean /= out.pixels, out.variance /= sqr(out.pixels);
   return out;
+}
+
+std::vector<Block> blocks_of(const Film& film) {
+  std::vector<Block> out;
+  for (int y = 0; y < film.height; y += block)
+    for (int x = 0; x < film.width; x += block) out.push_back(block_at(film, x, y));
+  return out;
+}
+
+// Of one sample: where a block's samples saw less than half of what another trial did, and neither's spread explains
+// it, the rest has as much relative variance as there were samples, at least.
+double missed_error(const Block& mine, const Block& other, uint32_t passes) {
+  const double missed = other.mean - mine.mean;
+  if (2 * missed < other.mean || sqr(missed) < 9 * (mine.variance + other.variance)) return 0;
+  return sqr(missed) / (sqr(other.mean) + 0.01) * mine.pixels * passes;
 }
 
 // What no pass of a trial saw cannot be told from its own spread: it is held against what the others saw. Values are
@@ -131,17 +144,14 @@ void find_unseen(std::vector<Seen>& seen) {
   std::vector<std::vector<Block>> blocks;
   for (const Seen& s : seen) blocks.push_back(blocks_of(s.film));
   for (size_t k = 0; k < seen.size(); ++k) {
-    double most = 0;
-    for (size_t j = 0; j < seen.size(); ++j) {
-      double sum = 0;
-      for (size_t i = 0; j != k && i < blocks[k].size(); ++i) {
-        const Block &mine = blocks[k][i], &other = blocks[j][i];
-        const double missed = std::max(other.mean - mine.mean, 0.0);
-        sum += (missed * missed - mine.variance - other.variance) / (other.mean * other.mean + 0.01);
-      }
-      most = std::max(most, sum / double(std::max(blocks[k].size(), size_t(1))));
+    double sum = 0;
+    for (size_t i = 0; i < blocks[k].size(); ++i) {
+      double most = 0;
+      for (size_t j = 0; j < seen.size(); ++j)
+        if (j != k) most = std::max(most, missed_error(blocks[k][i], blocks[j][i], seen[k].trial.passes));
+      sum += most;
     }
-    seen[k].trial.unseen = most;
+    seen[k].trial.unseen = sum / double(std::max(blocks[k].size(), size_t(1)));
   }
 }
 

@@ -11,10 +11,10 @@ struct Trial {
   std::string integrator;
   uint32_t passes = 0;  ///< that count; guided integrators dropped more
   double error = 0;     ///< estimated relMSE of one pass, exposed
-  double unseen = 0;    ///< relMSE of what all of its passes missed and the others found, over blocks of pixels
+  double unseen = 0;    ///< the same of what its samples missed and others saw, at least
   double cost = 0;      ///< of a sample [us], reckoned from its rays, so that it does not depend on the clock
   /// Time to equal error: what decides. Infinite where nothing but black was seen.
-  double price() const { return (error + passes * unseen) * cost; }
+  double price() const { return (error + unseen) * cost; }
 };
 
 /// A part of the method.
