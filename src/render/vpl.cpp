@@ -53,8 +53,9 @@ double share_of_joins(const Job& job, const Vec3& y, const Vec3& ng, const Vec3&
   return lights > 0 ? lights / (lights + walked) : 0;
 }
 
-// Whether the walk goes on from its last vertex, which joins at the one before could have reached as well.
-bool goes_on(Work& work) {
+// Whether the walk is to find what its last vertex y scatters, which joins at the one before could have found as well.
+// What passes y by a delta event they could not.
+bool is_walked(Work& work) {
   const Subpath& camera = work.scratch.camera;
   const Vertex &x = camera[camera.n - 2], &y = camera[camera.n - 1];
   if (camera.n < 3 || x.delta || !connectable(x.guide) || !connectable(y.guide)) return true;
@@ -150,6 +151,7 @@ void trace_vpl(const Job& job, Sample& sample, Scratch& scratch) {
   Walk walk;
   start_camera(*job.scene, job.walk, sample.raster, sample.lens, camera, walk);
   Surface surface;
+  bool walked = true;
   do {
     ++scratch.counters.camera_rays;
     const bool hit = step(*job.scene, *job.accel, job.walk, camera, walk, surface);
@@ -163,11 +165,12 @@ void trace_vpl(const Job& job, Sample& sample, Scratch& scratch) {
       return;
     }
     join_lights(work, surface);
-    if (!goes_on(work)) return;
-    if (camera.n > job.walk.max_edges || !connectable(camera[camera.n - 1].guide)) continue;
+    walked = is_walked(work);
+    if (!walked || camera.n > job.walk.max_edges || !connectable(camera[camera.n - 1].guide)) continue;
     join_next_event(work);
     join_vpls(work);
-  } while (camera.n <= job.walk.max_edges && scatter(job.walk, sample.sampler, camera, walk));
+  } while (camera.n <= job.walk.max_edges && scatter(job.walk, sample.sampler, camera, walk) &&
+           (walked || camera[camera.n - 1].delta));
   charge(scratch, scratch.ledger->camera_ticks);
 }
 
