@@ -240,7 +240,11 @@ Job with_vpls(Job job, const Film& film, std::vector<Scratch>& scratches, Vpls& 
   job.light_half = nullptr;
   job.walk.light_paths = 0, job.walk.inner_share = 0;  // the other weights are of s = 0 and s = 1 alone
   const uint32_t pass = film.dropped + film.passes;
-  if (vpls.pass != pass) place_vpls(job, pass, scratches, vpls);
+  if (vpls.pass != pass) {
+    place_vpls(job, pass, scratches, vpls);
+    if (film.chunks > 0)  // a pass that is gone on with: they were counted when it began
+      for (Scratch& s : scratches) s.counters = {};
+  }
   vpls.pass = pass;
   return job;
 }
