@@ -46,7 +46,7 @@ TEST(Merging, KeepsTheEnergyOfAFurnace) {
   for (const Oven oven : {Oven::box, Oven::sphere})
     for (const char* integrator : merging) {
       const Picture p = render_once(furnace(oven, wall, Rgb(1), 24), with_radius(integrator, 2, 24));
-      EXPECT_NEAR(mean(p), 2, 0.02) << integrator << " oven " << int(oven);
+      EXPECT_NEAR(mean(p), 2, 0.013) << integrator << " oven " << int(oven);
     }
 }
 
