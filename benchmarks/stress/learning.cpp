@@ -77,10 +77,8 @@ std::string scratch(const char* name) {
 }
 
 // A scene whose fields come from a file with a value in the wrong place.
-Scene poisoned(float value) {
-  const Scene scene = usual();
-  StoredFields stored = learned(scene, 8);
-  stored.fields.q.mean[stored.fields.q.mean.size() / 2] = value;
+// Through a file, which must be refused.
+void load_back(const StoredFields& stored, const Scene& scene) {
   const std::string path = scratch("fields");
   save_fields(path, stored);
   try {
@@ -89,19 +87,19 @@ Scene poisoned(float value) {
     std::filesystem::remove(path);
     throw;
   }
+}
+
+Scene poisoned(float value) {
+  const Scene scene = usual();
+  StoredFields stored = learned(scene, 8);
+  stored.fields.q.mean[stored.fields.q.mean.size() / 2] = value;
+  load_back(stored, scene);
   return scene;
 }
 
 Scene with_foreign_fields() {
-  const std::string path = scratch("foreign");
-  save_fields(path, learned(cornell(8), 8));
   Scene scene = usual();
-  try {
-    load_fields(path, scene_key(scene));
-  } catch (...) {
-    std::filesystem::remove(path);
-    throw;
-  }
+  load_back(learned(cornell(8), 8), scene);
   return scene;
 }
 

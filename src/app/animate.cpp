@@ -37,15 +37,10 @@ constexpr const char* coherences[] = {"on", "fields", "numbers", "off"};
 
 RenderOptions render_options(const Arguments& a, const Scene& scene) {
   RenderOptions o;
-  const auto known = integrator_names();
-  const auto is_known = [&](const std::string& name) {
-    return std::find(known.begin(), known.end(), name) != known.end();
-  };
-  if (!a.integrator.empty() && !is_known(a.integrator))
-    throw Error(fmt::format("--integrator {}: unknown; known are {}", a.integrator, fmt::join(known, ", ")));
-  o.integrator = !a.integrator.empty()              ? a.integrator
-                 : is_known(scene.hints.integrator) ? scene.hints.integrator
-                                                    : std::string("guided-bdpt");
+  if (!a.integrator.empty()) check_integrator(a.integrator);
+  o.integrator = !a.integrator.empty()                   ? a.integrator
+                 : is_integrator(scene.hints.integrator) ? scene.hints.integrator
+                                                         : std::string("guided-bdpt");
   o.spp = uint32_t(a.spp > 0 ? a.spp : scene.hints.spp > 0 ? scene.hints.spp : int(o.spp));
   if (!a.time.empty()) o.seconds = parse_duration("--time", a.time);
   if (!a.cpu_time.empty()) o.cpu_seconds = parse_duration("--cpu-time", a.cpu_time);

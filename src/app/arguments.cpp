@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
 
 #include "ajar/core/error.h"
+#include "ajar/render/options.h"
 
 namespace ajar {
 
@@ -53,6 +55,16 @@ double parse_duration(const std::string& option, const std::string& text) {
   if (!(value > 0) || factor == 0 || !std::isfinite(value))
     throw Error(fmt::format("{} {}: not a time; write 90s, 5m or 1h", option, text));
   return value * factor;
+}
+
+bool is_integrator(const std::string& name) {
+  const std::vector<std::string> known = integrator_names();
+  return std::find(known.begin(), known.end(), name) != known.end();
+}
+
+void check_integrator(const std::string& name) {
+  if (!is_integrator(name))
+    throw Error(fmt::format("--integrator {}: unknown; known are {}", name, fmt::join(integrator_names(), ", ")));
 }
 
 void check_writable(const std::string& path) {

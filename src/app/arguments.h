@@ -18,6 +18,10 @@ LoadOptions load_options(const std::vector<std::string>& defines, bool lenient);
 size_t parse_bytes(const std::string& option, const std::string& text);
 /// Seconds from 90s, 5m, 1h or a bare number; option names it in messages.
 double parse_duration(const std::string& option, const std::string& text);
+/// Whether there is an integrator of that name.
+bool is_integrator(const std::string& name);
+/// Throws unless there is.
+void check_integrator(const std::string& name);
 /// Throws where the folder of a file that is to be written is missing: before the work rather than after it.
 void check_writable(const std::string& path);
 /// The same for a file that is written as it is named: a folder of that name is in its way.

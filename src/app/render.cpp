@@ -136,15 +136,10 @@ std::string light_choice_of(const Arguments& a, const std::string& integrator) {
 
 RenderOptions render_options(const Arguments& a, Scene& scene, bool planned) {
   RenderOptions o;
-  const auto known = integrator_names();
-  const auto is_known = [&](const std::string& name) {
-    return std::find(known.begin(), known.end(), name) != known.end();
-  };
-  if (!a.integrator.empty() && !is_known(a.integrator))
-    throw Error(fmt::format("--integrator {}: unknown; known are {}", a.integrator, fmt::join(known, ", ")));
+  if (!a.integrator.empty()) check_integrator(a.integrator);
   if (!a.integrator.empty())
     o.integrator = a.integrator;
-  else if (is_known(scene.hints.integrator))
+  else if (is_integrator(scene.hints.integrator))
     o.integrator = scene.hints.integrator;
   else if (!scene.hints.integrator.empty())
     scene.notes.push_back(fmt::format("{}: integrator {} is not in this version; {} is used", a.scene,
