@@ -1,9 +1,9 @@
-// What the learned fields cost at a vertex. Renders a scene with guided-bdpt until the fields are learned, walks light and camera
-// subpaths through them as the next pass would, and notes every vertex; then sends the vertices, in their order, through what a
-// guide does with the fields at each: find the cell, density of the way back by the other side's field, draw a direction from its own
-// field with its density, density of the direction that the path took. Prints nanoseconds a vertex for each, and for all four one
-// after another: in a loop of their own, and between rays like those of the render, which leave the caches as a render does (the
-// same loop with rays alone is taken off).
+// What the learned fields cost at a vertex. Renders a scene with guided-bdpt until the fields are learned, walks light
+// and camera subpaths through them as the next pass would, and notes every vertex; then sends the vertices, in their
+// order, through what a guide does with the fields at each: find the cell, density of the way back by the other side's
+// field, draw a direction from its own field with its density, density of the direction that the path took. Prints
+// nanoseconds a vertex for each, and for all four one after another: in a loop of their own, and between rays like
+// those of the render, which leave the caches as a render does (the same loop with rays alone is taken off).
 //
 //   bench_field SCENE.xml [WIDTH HEIGHT [PASSES [ROUNDS [NAME=VALUE ...]]]]
 //
@@ -24,7 +24,7 @@ using namespace ajar;
 
 // What a guide knows of a vertex when it asks the fields.
 struct Visit {
-  Vec3 p, n;     // n: geometric, on the side of wo
+  Vec3 p, n;  // n: geometric, on the side of wo
   Vec3 wo, wi;
   Vec2 u;
   float error;
@@ -60,7 +60,8 @@ std::vector<Visit> walk_paths(const Scene& scene, const Accel& accel, const Fiel
   for (int y = 0; y < c.crop_height; ++y)
     for (int x = 0; x < c.crop_width; ++x)
       for (const Side side : {Side::light, Side::camera}) {
-        Sampler sampler = make_sampler(SamplerKind::sobol, 11, side, uint64_t(y) * uint64_t(c.crop_width) + uint64_t(x), 0);
+        Sampler sampler =
+            make_sampler(SamplerKind::sobol, 11, side, uint64_t(y) * uint64_t(c.crop_width) + uint64_t(x), 0);
         Walk walk;
         if (side == Side::camera)
           start_camera(scene, options, Vec2(c.crop_x + x, c.crop_y + y) + sampler.next2(), sampler.next2(), path, walk);
@@ -76,7 +77,8 @@ std::vector<Visit> walk_paths(const Scene& scene, const Accel& accel, const Fiel
 
 const Field& other(const Fields& f, Side side) { return side == Side::camera ? f.w : f.q; }
 
-// The least of some rounds, in nanoseconds a vertex; what is computed goes to a sum that is printed, lest it be left out.
+// The least of some rounds, in nanoseconds a vertex; what is computed goes to a sum that is printed, lest it be left
+// out.
 template <class Work>
 double measure(const std::vector<Visit>& visits, int rounds, float& sum, Work work) {
   double least = infinity;
@@ -91,9 +93,9 @@ double measure(const std::vector<Visit>& visits, int rounds, float& sum, Work wo
 float all(const Fields& f, const Visit& v) {
   const Place at = find(f.table, v.p, v.n);
   float p;
-  const float back = pdf(f, other(f, v.side), at.cell, v.wo);
-  const Vec3 w = sample(f, f.of(v.side), at.cell, v.u, p);
-  return back + w.x + p + pdf(f, f.of(v.side), at.cell, v.wi);
+  const float back = pdf(f, other(f, v.side), at.cell, v.p, v.wo);
+  const Vec3 w = sample(f, f.of(v.side), at.cell, v.p, v.u, p);
+  return back + w.x + p + pdf(f, f.of(v.side), at.cell, v.p, v.wi);
 }
 
 float trace(const Accel& accel, const Visit& v) {
@@ -118,9 +120,9 @@ void run(const std::string& path, const Settings& set) {
   if (visits.empty()) throw Error(path + ": no path met a vertex that the fields know; nothing to measure");
   double levels = 0;  // that a look-up passes
   for (const Visit& v : visits) levels += level_of(f.cells[v.cell].key) + 1;
-  fmt::print("{} {}x{}, {} passes: {} cells, {} + {} nodes, {:.1f} MB; {} vertices, {:.1f} levels of cells\n", path, set.width, set.height,
-             set.passes, f.cells.size(), f.q.nodes.size(), f.w.nodes.size(), double(bytes(f)) * 1e-6, visits.size(),
-             levels / double(visits.size()));
+  fmt::print("{} {}x{}, {} passes: {} cells, {} + {} nodes, {:.1f} MB; {} vertices, {:.1f} levels of cells\n", path,
+             set.width, set.height, set.passes, f.cells.size(), f.q.nodes.size(), f.w.nodes.size(),
+             double(bytes(f)) * 1e-6, visits.size(), levels / double(visits.size()));
   float sum = 0, p;
   const int n = set.rounds;
   const auto ns = [&](auto work) { return measure(visits, n, sum, work); };
@@ -131,9 +133,10 @@ void run(const std::string& path, const Settings& set) {
   const double together = ns([&](const Visit& v) { return all(f, v); });
   const double rays = ns([&](const Visit& v) { return trace(accel, v); });
   const double among = ns([&](const Visit& v) { return all(f, v) + trace(accel, v); });
-  fmt::print("  ns a vertex: look-up {:.1f}  reverse density {:.1f}  sample {:.1f}  density {:.1f}; all {:.1f}; a ray {:.0f}; "
-             "all between rays {:.1f}  (sum {:.3g})\n",
-             look_up, reverse, draw, density, together, rays, among - rays, sum);
+  fmt::print(
+      "  ns a vertex: look-up {:.1f}  reverse density {:.1f}  sample {:.1f}  density {:.1f}; all {:.1f}; a ray {:.0f}; "
+      "all between rays {:.1f}  (sum {:.3g})\n",
+      look_up, reverse, draw, density, together, rays, among - rays, sum);
 }
 
 int argument(int argc, char** argv, int i, int otherwise) { return argc > i ? std::atoi(argv[i]) : otherwise; }
@@ -155,7 +158,8 @@ int main(int argc, char** argv) try {
   if (argc > 1) return run(argv[1], set), 0;
   run(AJAR_SOURCE_DIR "/scenes/ajar/ajar.xml", set);
   const char* shared = std::getenv("AJAR_SHARED_SCENES");
-  const std::string veach = std::string(shared ? shared : AJAR_SOURCE_DIR "/../shared/scenes") + "/veach-ajar/scene.xml";
+  const std::string veach =
+      std::string(shared ? shared : AJAR_SOURCE_DIR "/../shared/scenes") + "/veach-ajar/scene.xml";
   if (std::filesystem::exists(veach))
     run(veach, set);
   else

@@ -7,20 +7,19 @@
 namespace ajar {
 namespace {
 
-// Bits of a key, from the lowest: x, y, z (18 each), normal (5), level + 1 (4).
-constexpr int bits = 18, most_coordinate = (1 << bits) - 1;
+// Bits of a key, from the lowest: x, y, z (17 each), normal (5), compartment (4), level + 1 (4).
+constexpr int bits = 17, most_coordinate = (1 << bits) - 1;
 
-uint32_t normal_bin(const Vec3& n) {
-  const auto third = [](float x) { return uint32_t(x > 1 / 3.0f ? 2 : x < -1 / 3.0f ? 0 : 1); };
-  return third(n.x) + 3 * third(n.y) + 9 * third(n.z);
-}
+constexpr int at_normal = 3 * bits, at_compartment = at_normal + 5, at_level = at_compartment + 4;
 
-CellKey make_key(int level, uint32_t bin, const glm::uvec3& c) {
-  return (uint64_t(level + 1) << 59) | (uint64_t(bin) << 54) | (uint64_t(c.z) << 36) | (uint64_t(c.y) << 18) | c.x;
+// kind: normal's bin, and compartment above it.
+CellKey make_key(int level, uint32_t kind, const glm::uvec3& c) {
+  return (uint64_t(level + 1) << at_level) | (uint64_t(kind) << at_normal) | (uint64_t(c.z) << 2 * bits) |
+         (uint64_t(c.y) << bits) | c.x;
 }
 
 glm::uvec3 coordinates_of(CellKey key) {
-  return {key & most_coordinate, (key >> 18) & most_coordinate, (key >> 36) & most_coordinate};
+  return {key & most_coordinate, (key >> bits) & most_coordinate, (key >> 2 * bits) & most_coordinate};
 }
 
 // Where a key is among the slots, or the free slot where it would be.
@@ -34,6 +33,18 @@ size_t slot_of(const CellTable& table, CellKey key) {
 const CellTable::Slot* find_slot(const CellTable& table, CellKey key) {
   const CellTable::Slot& slot = table.slots[slot_of(table, key)];
   return slot.key == key ? &slot : nullptr;
+}
+
+// Which part of its cube of level 0 a point is in.
+uint32_t compartment_of(const CellTable& table, const Vec3& p) {
+  if (table.cuts.empty()) return 0;
+  const size_t cube = top_cube(table, p);
+  int32_t at = cube < table.compartments.size() ? table.compartments[cube] : ~0;
+  while (at >= 0) {
+    const CellCut& cut = table.cuts[size_t(at)];
+    at = p[cut.axis] < cut.at ? cut.below : cut.above;
+  }
+  return uint32_t(~at);
 }
 
 // Nearest probe to a point with a similar normal, or its opposite; none where there is none within reach.
@@ -92,6 +103,11 @@ void place(CellTable& table, const CellTable::Slot& slot) { table.slots[slot_of(
 
 }  // namespace
 
+uint32_t normal_bin(const Vec3& n) {
+  const auto third = [](float x) { return uint32_t(x > 1 / 3.0f ? 2 : x < -1 / 3.0f ? 0 : 1); };
+  return third(n.x) + 3 * third(n.y) + 9 * third(n.z);
+}
+
 CellTable make_cell_table(const Vec3& center, float radius) {
   CellTable t;
   t.width = radius / 6;
@@ -110,14 +126,22 @@ CellTable make_probe_table(std::vector<Probe> probes, double area) {
   return t;
 }
 
+size_t top_cube(const CellTable& table, const Vec3& p) {
+  const Vec3 q = (p - table.origin) / table.width;
+  const glm::ivec3 c(glm::floor(glm::clamp(q, Vec3(-1), Vec3(top_cubes))));
+  if (glm::any(glm::lessThan(c, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(c, glm::ivec3(top_cubes))))
+    return size_t(top_cubes) * top_cubes * top_cubes;
+  return size_t((c.z * top_cubes + c.y) * top_cubes + c.x);
+}
+
 Place find(const CellTable& table, const Vec3& p, const Vec3& n) {
   if (!table.probes.empty()) return find_probe(table, p, n);
   const Vec3 q = (p - table.origin) * (float(1 << most_cell_levels) / table.width);
   const glm::uvec3 c(glm::clamp(q, Vec3(0), Vec3(float(most_coordinate))));
-  const uint32_t bin = normal_bin(n);
+  const uint32_t kind = normal_bin(n) | compartment_of(table, p) << 5;
   Place out;
   for (int level = 0; level <= most_cell_levels; ++level) {
-    const CellKey key = make_key(level, bin, c >> uint32_t(most_cell_levels - level));
+    const CellKey key = make_key(level, kind, c >> uint32_t(most_cell_levels - level));
     const CellTable::Slot* slot = find_slot(table, key);
     if (!slot) {
       out.missing = key;
@@ -147,7 +171,7 @@ uint32_t cell_of(const CellTable& table, CellKey key) {
 
 void set_divided(CellTable& table, CellKey key) { table.slots[slot_of(table, key)].divided = true; }
 
-int level_of(CellKey key) { return int(key >> 59) - 1; }
+int level_of(CellKey key) { return int(key >> at_level) - 1; }
 
 Box cube_of(const CellTable& table, CellKey key) {
   const glm::uvec3 c = coordinates_of(key);
@@ -160,11 +184,16 @@ Box cube_of(const CellTable& table, CellKey key) {
   return {low, low + edge};
 }
 
+Vec3 middle_of(const CellTable& table, CellKey key) {
+  const Box cube = cube_of(table, key);
+  return 0.5f * (cube.lo + cube.hi);
+}
+
 CellKey parent_of(CellKey key) {
   const int level = level_of(key);
   if (level <= 0) return 0;
   const glm::uvec3 c = coordinates_of(key);
-  return make_key(level - 1, uint32_t(key >> 54) & 31, c >> 1u);
+  return make_key(level - 1, uint32_t(key >> at_normal) & 511, c >> 1u);
 }
 
 }  // namespace ajar

@@ -105,12 +105,12 @@ bool guide_direction(const Fields* fields, Vec2 u, EmissionSample& out) {
   float pdf_field;
   if (u.x < mix) {
     u.x = std::min(u.x / mix, one_minus_epsilon);
-    out.direction = sample(*fields, fields->w, cell, u, pdf_field);
+    out.direction = sample(*fields, fields->w, cell, out.point.p, u, pdf_field);
     if (!(glm::dot(out.direction, out.point.n) > 0)) return false;
   } else {
     u.x = std::min((u.x - mix) / (1 - mix), one_minus_epsilon);
     out.direction = make_frame(out.point.n).to_world(to_cosine_hemisphere(u));
-    pdf_field = pdf(*fields, fields->w, cell, out.direction);
+    pdf_field = pdf(*fields, fields->w, cell, out.point.p, out.direction);
   }
   out.pdf_direction = (1 - mix) * std::max(glm::dot(out.point.n, out.direction), 0.0f) * inv_pi + mix * pdf_field;
   return out.pdf_direction > 0;
@@ -149,7 +149,7 @@ EmissionPdf pdf_emission(const Scene& scene, const Fields* fields, const LightPo
   float mix;
   const uint32_t cell = emission_cell(fields, point, mix);
   if (cell != none && e.direction > 0)
-    e.direction = (1 - mix) * e.direction + mix * pdf(*fields, fields->w, cell, direction);
+    e.direction = (1 - mix) * e.direction + mix * pdf(*fields, fields->w, cell, point.p, direction);
   return e;
 }
 

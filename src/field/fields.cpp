@@ -3,6 +3,31 @@
 #include "ajar/core/sampler.h"
 
 namespace ajar {
+namespace {
+
+// Where p is beside the cell's centre, in its tangent plane, over R: well within the unit disk, so that p is within the
+// sphere and every direction leaves it once.
+Vec2 shift(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p) {
+  const float near = field.cells[cell].near;
+  if (near == 0) return Vec2(0);
+  const Cell& c = fields.cells[cell];
+  const Vec3 beside = near * (p - c.center);
+  const Vec2 d(glm::dot(c.frame.s, beside), glm::dot(c.frame.t, beside));
+  const float l2 = glm::dot(d, d);
+  return l2 > sqr(0.9f) ? d * (0.9f / std::sqrt(l2)) : d;
+}
+
+// The inverse of centered; density as there.
+Vec3 from_center(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p, const Vec3& center,
+                 float& density) {
+  const Vec2 d = shift(fields, field, cell, p);
+  const Vec3 v(center.x - d.x, center.y - d.y, center.z);
+  const float t2 = glm::dot(v, v), t = std::sqrt(t2);
+  density = t2 * t / std::max(glm::dot(v, center), 1e-12f);
+  return v / t;
+}
+
+}  // namespace
 
 const Field& Fields::of(Side side) const { return side == Side::camera ? q : w; }
 
@@ -24,20 +49,31 @@ size_t find_stratum(const Field& field, uint32_t cell, Vec2 at) {
   return 16 * size_t(node) + size_t(i);
 }
 
-float pdf(const Fields& fields, const Field& field, uint32_t cell, const Vec3& w) {
+Vec3 centered(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p, const Vec3& local,
+              float& density) {
+  const Vec2 d = shift(fields, field, cell, p);
+  const float along = d.x * local.x + d.y * local.y;
+  const float cosine = std::sqrt(along * along + 1 - glm::dot(d, d)), t = cosine - along;
+  density = t * t / cosine;
+  return {d.x + t * local.x, d.y + t * local.y, t * local.z};
+}
+
+float pdf(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p, const Vec3& w) {
   const Vec3 local = fields.cells[cell].frame.to_local(w);
   if (!(local.z > 0)) return 0;
   if (fields.structure != Structure::adaptive) return patch_density(field.nodes, field.cells[cell].root, local);
-  return density(field.nodes, field.cells[cell].root, to_square(local)) * square_density(local);
+  float stretch;
+  const Vec3 at = centered(fields, field, cell, p, local, stretch);
+  return density(field.nodes, field.cells[cell].root, to_square(at)) * square_density(at) * stretch;
 }
 
-Vec3 sample(const Fields& fields, const Field& field, uint32_t cell, const Vec2& u, float& pdf) {
+Vec3 sample(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p, const Vec2& u, float& pdf) {
   if (fields.structure != Structure::adaptive)
     return fields.cells[cell].frame.to_world(sample_patch(field.nodes, field.cells[cell].root, u, pdf));
   float over_square;
   const Vec2 at = sample(field.nodes, field.cells[cell].root, u, over_square);
-  const Vec3 local = from_square(at);
-  pdf = over_square * square_density(local);
+  const Vec3 center = from_square(at), local = from_center(fields, field, cell, p, center, pdf);
+  pdf *= over_square * square_density(center);
   return fields.cells[cell].frame.to_world(local);
 }
 
@@ -46,8 +82,8 @@ size_t bytes(const Fields& f) {
     return x.cells.size() * sizeof(FieldCell) + x.nodes.size() * (sizeof(StrataNode) + 32 * sizeof(float));
   };
   return f.table.slots.size() * sizeof(CellTable::Slot) + f.table.probes.size() * sizeof(Probe) +
-         f.cells.size() * sizeof(Cell) + bytes(f.views) + of(f.q) + of(f.w) + of(f.disk) +
-         bytes(f.lights) + bytes(f.starts);
+         f.cells.size() * sizeof(Cell) + bytes(f.views) + of(f.q) + of(f.w) + of(f.disk) + bytes(f.lights) +
+         bytes(f.starts);
 }
 
 }  // namespace ajar

@@ -71,10 +71,10 @@ void place(const Fields& fields, const Surface& surface, Guide& out) {
   const Side other = out.side == Side::camera ? Side::light : Side::camera;
   out.mix = share * fields.of(out.side).cells[at.cell].mix;
   out.mix_other = share * fields.of(other).cells[at.cell].mix;
-  if (out.mix_other > 0) out.back = pdf(fields, fields.of(other), at.cell, out.wo);
+  if (out.mix_other > 0) out.back = pdf(fields, fields.of(other), at.cell, out.p, out.wo);
 }
 
-float pdf_field(const Guide& g, const Vec3& wi) { return pdf(*g.fields, g.fields->of(g.side), g.cell, wi); }
+float pdf_field(const Guide& g, const Vec3& wi) { return pdf(*g.fields, g.fields->of(g.side), g.cell, g.p, wi); }
 
 // (G4) for both sides: the bsdf's densities become those of the mixtures. What passes a mask straight does so with the
 // mask's probability, whatever the fields on either side say: the mixtures are of the rest.
@@ -100,7 +100,7 @@ bool takes_field(const Guide& g, float& u_lobe) {
 
 bool sample_field(const Guide& g, const Vec2& u, Mode mode, GuideSample& out) {
   float pdf_field;
-  out.wi = sample(*g.fields, g.fields->of(g.side), g.cell, u, pdf_field);
+  out.wi = sample(*g.fields, g.fields->of(g.side), g.cell, g.p, u, pdf_field);
   const Vec3 local = g.frame.to_local(out.wi);
   if (!(pdf_field > 0) || local.z == 0 || g.blocked || !sides_agree(g, out.wi, local)) return false;
   const BsdfEval e = eval(g.bsdf, g.wo_local, local, mode);
@@ -125,6 +125,7 @@ void make_guide(const Scene& scene, const Fields* fields, Side side, const Surfa
   out.wo_local = out.frame.to_local(wo);
   out.mix = out.mix_other = 0;
   out.side = side;
+  out.p = surface.p;
   out.fields = fields;
   out.cell = none;
   out.missing = 0;

@@ -28,6 +28,7 @@ struct Node {
 struct Work {
   Structure structure = Structure::adaptive;
   Rule rule = Rule::expected;
+  const Fields* fields = nullptr;
   const Field* field = nullptr;
   const Tallies* tallies = nullptr;
   const LearnOptions* options = nullptr;
@@ -192,6 +193,15 @@ uint32_t append(Trees& out, const std::vector<Node>& nodes, Structure structure)
 // (G4): how much strata with so much evidence behind them are trusted.
 float mix_for(const LearnOptions& options, float weight) { return options.mix * weight / (weight + options.trust); }
 
+// (G8); at most what the cell's size allows.
+float nearness(const Fields& fields, const Work& w, uint32_t cell) {
+  const int64_t held = w.tallies->held[cell];
+  const float old = w.field->cells[cell].near;
+  if (held == 0) return old;
+  const float now = float(double(w.tallies->nearness[cell]) / double(held)) / fields.table.width;
+  return std::min(old > 0 ? 0.5f * (old + now) : now, 1 / fields.table.edge(level_of(fields.cells[cell].key)));
+}
+
 FieldCell learn_cell(Work& w, uint32_t cell, double area, double paths, Trees& out) {
   const FieldCell& old = w.field->cells[cell];
   const Tallies& t = *w.tallies;
@@ -216,6 +226,7 @@ FieldCell learn_cell(Work& w, uint32_t cell, double area, double paths, Trees& o
     for (int i = 0; i < 16; ++i) weight += n.child[i] < 0 ? n.weight[i] : 0;
   next.mix = bare > 0 ? mix_for(*w.options, weight) : 0;
   const float seen = float(double(t.visits[cell]) / (area * paths));
+  if (w.structure == Structure::adaptive) next.near = nearness(*w.fields, w, cell);
   next.visits = old.visits > 0 ? 0.5f * (old.visits + seen) : seen;
   return next;
 }
@@ -230,7 +241,7 @@ Field learn_field(const Fields& fields, const Field& field, Structure structure,
   next.unit = field.unit;
   next.cells.resize(n);
   parallel_for(blocks, [&](uint32_t b) {
-    Work work{structure, fields.rule, &field, &tallies, &options, {}};
+    Work work{structure, fields.rule, &fields, &field, &tallies, &options, {}};
     for (uint32_t c = b * block; c < std::min(n, (b + 1) * block); ++c) {
       const bool sized = &field != &fields.disk;
       const double edge = sized ? double(fields.table.edge(level_of(fields.cells[c].key))) : 1;
@@ -299,9 +310,10 @@ void add_cells(Fields& fields, const Sightings& sightings, const LearnOptions& o
     if (!is_finite(n)) continue;
     const uint32_t id = uint32_t(fields.cells.size());
     if (parent == none)
-      fields.cells.push_back({key, make_frame(n), 0, fields.regions++ % most_regions});
+      fields.cells.push_back({key, make_frame(n), middle_of(fields.table, key), 0, fields.regions++ % most_regions});
     else
-      fields.cells.push_back({key, fields.cells[parent].frame, 0, fields.cells[parent].region});
+      fields.cells.push_back(
+          {key, fields.cells[parent].frame, middle_of(fields.table, key), 0, fields.cells[parent].region});
     insert(fields.table, key, id);
     add_cell(fields.q, parent, fields.structure);
     add_cell(fields.w, parent, fields.structure);

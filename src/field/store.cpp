@@ -11,7 +11,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind fields_kind = {"AJARfd04", "file of fields", "make one with --save-fields",
+constexpr FileKind fields_kind = {"AJARfd05", "file of fields", "make one with --save-fields",
                                   "learn the fields again with --save-fields"};
 
 bool is_amount(float x) { return x >= 0 && x < infinity; }
@@ -24,13 +24,14 @@ void frame_members(Io& io, Part& f) {
 }
 template <class Io, class Part>
 void cell_members(Io& io, Part& c) {
-  io.value(c.root), io.value(c.direct), io.value(c.total), io.value(c.mix), io.value(c.visits);
+  io.value(c.root), io.value(c.direct), io.value(c.total), io.value(c.mix), io.value(c.visits), io.value(c.near);
 }
 template <class Io, class Part>
 void tallies_members(Io& io, Part& t) {
   io.array(t.value), io.array(t.weight), io.array(t.direct), io.array(t.directs), io.array(t.visits);
+  io.array(t.held), io.array(t.nearness);
 }
-static_assert(sizeof(FieldCell) == 20 && sizeof(StrataNode) == 40 && sizeof(Cell) == 56 && sizeof(Sighting) == 32 &&
+static_assert(sizeof(FieldCell) == 24 && sizeof(StrataNode) == 40 && sizeof(Cell) == 64 && sizeof(Sighting) == 32 &&
                   sizeof(Probe) == 28,
               "a member was added or taken away: list it here and raise the versions of the files");
 
@@ -80,7 +81,8 @@ bool claim(const std::vector<StrataNode>& nodes, uint32_t root, std::vector<bool
 }
 
 bool is_sound(const FieldCell& c) {
-  return is_amount(c.direct) && is_amount(c.total) && c.mix >= 0 && c.mix < 1 && is_amount(c.visits);
+  return is_amount(c.direct) && is_amount(c.total) && c.mix >= 0 && c.mix < 1 && is_amount(c.visits) &&
+         is_amount(c.near);
 }
 
 void read(Reader& r, Structure structure, size_t cells, Field& f) {
@@ -177,12 +179,29 @@ void read(Reader& r, const Field& f, Tallies& t) {
   tallies_members(r, t);
   const size_t strata = 16 * f.nodes.size(), cells = f.cells.size();
   r.require(t.value.size() == strata && t.weight.size() == strata && t.direct.size() == cells &&
-            t.directs.size() == cells && t.visits.size() == cells);
+            t.directs.size() == cells && t.visits.size() == cells && t.held.size() == cells &&
+            t.nearness.size() == cells);
 }
 
 template <class T>
 uint64_t sum_of(const std::vector<T>& v, uint64_t sum) {
   return checksum(v.data(), v.size() * sizeof(T), sum);
+}
+
+// Cuts lead to later cuts or to compartments that a key has room for, so that every way through them ends.
+void read_compartments(Reader& r, CellTable& table) {
+  r.array(table.cuts), r.array(table.compartments);
+  const auto leads_on = [&](int32_t to, int32_t from) {
+    return to >= 0 ? to > from && size_t(to) < table.cuts.size() : ~to < most_compartments;
+  };
+  const size_t cubes = size_t(top_cubes) * top_cubes * top_cubes;
+  r.require(table.compartments.empty() ? table.cuts.empty() : table.compartments.size() == cubes);
+  for (const int32_t c : table.compartments) r.require(leads_on(c, -1));
+  for (size_t i = 0; i < table.cuts.size(); ++i) {
+    const CellCut& c = table.cuts[i];
+    r.require(std::isfinite(c.at) && c.axis >= 0 && c.axis < 3 && leads_on(c.below, int32_t(i)) &&
+              leads_on(c.above, int32_t(i)));
+  }
 }
 
 }  // namespace
@@ -192,6 +211,7 @@ void write(Writer& w, const Fields& fields) {
   w.value(fields.generation), w.value(fields.table.origin), w.value(fields.table.width);
   w.value(uint64_t(fields.table.probes.size()));
   for (const Probe& p : fields.table.probes) w.value(p.p), w.value(p.n), w.value(p.axis);
+  w.array(fields.table.cuts), w.array(fields.table.compartments);
   // The table's divided marks go with the cells; the table itself is made anew.
   std::vector<char> divided(fields.cells.size());
   for (const CellTable::Slot& s : fields.table.slots)
@@ -222,6 +242,7 @@ void read(Reader& r, Fields& fields) {
     r.value(p.p), r.value(p.n), r.value(p.axis);
     r.require(is_finite(p.p) && is_finite(p.n) && p.axis < 3);
   }
+  read_compartments(r, fields.table);
   fields.cells.resize(r.count(sizeof(CellKey)));
   for (uint32_t i = 0; i < fields.cells.size(); ++i) {
     Cell& c = fields.cells[i];
@@ -229,6 +250,7 @@ void read(Reader& r, Fields& fields) {
     r.value(c.key), r.value(divided), frame_members(r, c.frame), r.value(c.seen), r.value(c.region);
     r.require(is_cell_key(c.key) && cell_of(fields.table, c.key) == none && is_sound(c.frame) && is_amount(c.seen) &&
               c.region < most_regions);
+    c.center = middle_of(fields.table, c.key);
     insert(fields.table, c.key, i);
     if (divided) set_divided(fields.table, c.key);
   }

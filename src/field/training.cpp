@@ -18,8 +18,18 @@ void resize(Tallies& t, const Field& f) {
   t.value.assign(16 * f.nodes.size(), 0);
   t.weight.assign(16 * f.nodes.size(), 0);
   t.direct.assign(f.cells.size(), 0);
+  t.held.assign(f.cells.size(), 0);
+  t.nearness.assign(f.cells.size(), 0);
   t.directs.assign(f.cells.size(), 0);
   t.visits.assign(f.cells.size(), 0);
+}
+
+// What is brightest decides how far away things are. (G8)
+void add_distance(const Fields& fields, const Field& field, Tallies& tallies, uint32_t cell, const Record& r) {
+  const float total = field.cells[cell].total, above = total > 0 ? std::min(pi * r.value / total, 64.0f) : 1;
+  const double held = std::min(double(r.weight), largest_weight) * r.value * above / field.unit;
+  add(tallies.held[cell], to_fixed(held, value_step));
+  add(tallies.nearness[cell], to_fixed(held * fields.table.width / r.distance, value_step));
 }
 
 }  // namespace
@@ -36,11 +46,13 @@ Training start_training(const Fields& fields) {
   return t;
 }
 
-void record(const Fields& fields, const Field& field, Tallies& tallies, uint32_t cell, const Vec3& w, float value,
-            float weight) {
-  const Vec3 local = fields.cells[cell].frame.to_local(w);
-  if (!(local.z > 0) || !(weight > 0) || !(value >= 0)) return;
-  add_record(field, tallies, find_stratum(fields, field, cell, local), value, weight);
+void record(const Fields& fields, const Field& field, Tallies& tallies, uint32_t cell, const Record& r) {
+  const Vec3 local = fields.cells[cell].frame.to_local(r.w);
+  if (!(local.z > 0) || !(r.weight > 0) || !(r.value >= 0)) return;
+  float density;
+  const size_t stratum = find_stratum(fields, field, cell, centered(fields, field, cell, r.p, local, density));
+  add_record(field, tallies, stratum, r.value, r.weight);
+  if (r.value > 0) add_distance(fields, field, tallies, cell, r);
 }
 
 void record_square(const Field& field, Tallies& tallies, uint32_t cell, const Vec2& at, float value, float weight) {

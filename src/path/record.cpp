@@ -41,12 +41,13 @@ void record_segment(const Fields& fields, Training& training, const Vertex& a, c
   if (from.own + from.other <= 0) from.own = 1;
   const double density = from.own * pdf / from.cosine + to.other * back / to.cosine;
   const float at_a = weight_at(from, density);
-  record(fields, fields.q, training.q, from.cell, d, to.q, at_a);
-  record(fields, fields.w, training.w, from.cell, d, to.w, at_a);
+  const float distance = std::sqrt(b.distance2);
+  record(fields, fields.q, training.q, from.cell, {a.p, d, distance, to.q, at_a});
+  record(fields, fields.w, training.w, from.cell, {a.p, d, distance, to.w, at_a});
   if (to.cell == none) return;
   const float at_b = weight_at(to, density);
-  record(fields, fields.q, training.q, to.cell, -d, from.q, at_b);
-  record(fields, fields.w, training.w, to.cell, -d, from.w, at_b);
+  record(fields, fields.q, training.q, to.cell, {b.p, -d, distance, from.q, at_b});
+  record(fields, fields.w, training.w, to.cell, {b.p, -d, distance, from.w, at_b});
 }
 
 // The field of the side that traced the segment, alone: the path knows nothing of the other's.
@@ -56,7 +57,8 @@ void record_return(const Fields& fields, Training& training, const Vertex& a, co
   const float cosine = std::abs(glm::dot(a.ng, d)), cosine_b = std::abs(glm::dot(b.ng, d));
   if (a.guide.cell == none || !(cosine > 1e-4f) || !(cosine_b > 1e-4f)) return;
   const double pdf = b.own * b.distance2 / cosine_b;
-  record(fields, fields.of(side), training.of(side), a.guide.cell, d, brought, float(cosine * inv_pi / pdf));
+  record(fields, fields.of(side), training.of(side), a.guide.cell,
+         {a.p, d, std::sqrt(b.distance2), brought, float(cosine * inv_pi / pdf)});
 }
 
 // The lamp's own cell learns where W lies, too: it guides emission.
@@ -72,8 +74,9 @@ void record_emission(const Fields& fields, Training& training, Sightings& sighti
   const float cosine = glm::dot(lamp.ng, d);
   if (!(to.cosine > 1e-4f) || !(cosine > 0)) return;
   const double pdf = first.own * first.distance2 / to.cosine;
-  record(fields, fields.w, training.w, at.cell, d, fields.rule == Rule::returned ? brought : to.w,
-         float(cosine * inv_pi / pdf));
+  const float value = fields.rule == Rule::returned ? brought : to.w;
+  record(fields, fields.w, training.w, at.cell,
+         {lamp.p, d, std::sqrt(first.distance2), value, float(cosine * inv_pi / pdf)});
 }
 
 // What a vertex scatters back along the path, by what the path itself went on to find; next is the same of the vertex

@@ -9,6 +9,7 @@
 #include "ajar/core/error.h"
 #include "ajar/core/parallel.h"
 #include "ajar/field/probes.h"
+#include "ajar/field/walls.h"
 #include "job.h"
 
 namespace ajar {
@@ -316,6 +317,9 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   if (learns(options)) {
     job.learning = &state.learning, job.training = &state.learning.training;
     job.walk.fields = &state.learning.fields;
+    CellTable& table = state.learning.fields.table;
+    if (options.learn.structure == Structure::adaptive && table.compartments.empty())
+      cut_along_walls(scene, accel, table);
   }
   if (is_guided(options.integrator)) {
     job.guided = true;

@@ -43,7 +43,7 @@ struct Lesson {
 
   explicit Lesson(const Fields& f, Side s = Side::camera) : fields(f), side(s) {}
   void add(const Vec3& w, float value, float weight) {
-    record(fields, fields.of(side), training.of(side), 0, w, value, weight);
+    record(fields, fields.of(side), training.of(side), 0, {somewhere, w, 1e30f, value, weight});
   }
   Fields learned(const LearnOptions& options = {}) const { return learn(fields, training, {}, 1, options); }
 };

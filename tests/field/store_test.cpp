@@ -41,7 +41,7 @@ Fields learned(const Scene& scene, int generations, Structure structure = Struct
       const Vec3 w = make_frame(n).to_world(to_cosine_hemisphere(sampler.next2()));
       for (const Side side : {Side::camera, Side::light}) {
         record_visit(training.of(side), at.cell);
-        record(fields, fields.of(side), training.of(side), at.cell, w, w.x > 0.6f ? 5.0f : 0.01f, 1);
+        record(fields, fields.of(side), training.of(side), at.cell, {p, w, 2, w.x > 0.6f ? 5.0f : 0.01f, 1});
         record_direct(fields.of(side), training.of(side), at.cell, u.x);
       }
       record_join(fields.views, training.views, fields.cells[at.cell].region, uint32_t(i) % 5, i % 3 == 0);
@@ -110,8 +110,8 @@ TEST_P(StoredStructures, FieldsComeBack) {
       EXPECT_EQ(a.of(side).cells[at.cell].mix, b.of(side).cells[at.cell].mix);
       EXPECT_EQ(a.of(side).cells[at.cell].total, b.of(side).cells[at.cell].total);
       float pdf_a = 0, pdf_b = 0;
-      const Vec3 w = sample(a, a.of(side), at.cell, v, pdf_a);
-      EXPECT_EQ(w, sample(b, b.of(side), at.cell, v, pdf_b));
+      const Vec3 w = sample(a, a.of(side), at.cell, p, v, pdf_a);
+      EXPECT_EQ(w, sample(b, b.of(side), at.cell, p, v, pdf_b));
       EXPECT_EQ(pdf_a, pdf_b);
     }
   }
@@ -206,7 +206,7 @@ TEST_F(Store, WhatCannotBeIsAnError) {
       {"shares that fall", [](Fields& f, uint32_t, uint32_t p) { f.q.nodes[p].before[7] = 0; }},
       {"shares that do not begin at 0", [](Fields& f, uint32_t, uint32_t p) { f.q.nodes[p].before[0] = 1; }},
       {"key of no level", [](Fields& f, uint32_t i, uint32_t) { f.cells[i].key = 5; }},
-      {"key of a level too deep", [](Fields& f, uint32_t i, uint32_t) { f.cells[i].key |= 15ull << 59; }},
+      {"key of a level too deep", [](Fields& f, uint32_t i, uint32_t) { f.cells[i].key |= 15ull << 60; }},
       {"key twice", [](Fields& f, uint32_t i, uint32_t) { f.cells[i].key = f.cells[0].key; }},
       {"frame that is none", [](Fields& f, uint32_t i, uint32_t) { f.cells[i].frame.s = f.cells[i].frame.n; }},
       {"frame of NaN", [](Fields& f, uint32_t i, uint32_t) { f.cells[i].frame.t = Vec3(std::nanf("")); }},
@@ -223,6 +223,29 @@ TEST_F(Store, WhatCannotBeIsAnError) {
       {"views of more regions than there are", [](Fields& f, uint32_t, uint32_t) { f.regions = f.views.regions - 1; }},
       {"views of fewer regions than they say", [](Fields& f, uint32_t, uint32_t) { --f.views.regions; }},
       {"more views than there can be", [](Fields& f, uint32_t, uint32_t) { f.views.regions = ~0u; }},
+      {"a distance of less than none", [](Fields& f, uint32_t cell, uint32_t) { f.q.cells[cell].near = -1; }},
+      {"a distance of NaN", [](Fields& f, uint32_t cell, uint32_t) { f.w.cells[cell].near = std::nanf(""); }},
+      {"cuts of no cubes",
+       [](Fields& f, uint32_t, uint32_t) {
+         f.table.cuts.push_back({0, 0, ~0, ~1});
+       }},
+      {"cubes of another number", [](Fields& f, uint32_t, uint32_t) { f.table.compartments.assign(5, ~0); }},
+      {"a cut that is not there", [](Fields& f, uint32_t, uint32_t) { f.table.compartments.assign(2197, 0); }},
+      {"a cut that leads back",
+       [](Fields& f, uint32_t, uint32_t) {
+         f.table.compartments.assign(2197, ~0);
+         f.table.cuts = {{0, 0, ~0, 0}};
+       }},
+      {"a cut of no axis",
+       [](Fields& f, uint32_t, uint32_t) {
+         f.table.compartments.assign(2197, ~0);
+         f.table.cuts = {{0, 3, ~0, ~1}};
+       }},
+      {"a compartment too many",
+       [](Fields& f, uint32_t, uint32_t) {
+         f.table.compartments.assign(2197, ~0);
+         f.table.cuts = {{0, 0, ~0, ~16}};
+       }},
       {"joins tried less than never", [](Fields& f, uint32_t, uint32_t) { f.views.tried[1] = -1; }},
       {"infinitely many joins", [](Fields& f, uint32_t, uint32_t) { f.views.tried[1] = infinity; }},
       {"free joins of NaN", [](Fields& f, uint32_t, uint32_t) { f.views.seen[1] = std::nanf(""); }},
@@ -270,7 +293,7 @@ TEST_F(Store, PatchesThatCannotBeAreAnError) {
 TEST_F(Store, DepthOfTreesIsBounded) {
   for (const int levels : {most_levels, most_levels + 1}) {
     Fields f = start_fields(scene, 64);
-    f.cells.push_back({CellKey(1) << 59, {}, 0, 0});
+    f.cells.push_back({CellKey(1) << 60, {}, {}, 0, 0});
     for (Field* field : {&f.q, &f.w}) {
       field->cells.emplace_back().root = 0;
       for (int i = 0; i < levels; ++i) {
@@ -292,7 +315,7 @@ TEST_F(Store, TrainingMustFitTheFields) {
   Training training = start_training(large);
   training.q.value[17] = 5, training.w.visits[1] = 9;
   record_join(large.views, training.views, 0, 1, true);
-  const Sightings sightings = {{CellKey(2) << 59, {3, {1, 2, 3}}}, {CellKey(1) << 59, {1, {0, 0, 1}}}};
+  const Sightings sightings = {{CellKey(2) << 60, {3, {1, 2, 3}}}, {CellKey(1) << 60, {1, {0, 0, 1}}}};
   write_file(path, kind, [&](Writer& w) { write(w, training), write(w, sightings); });
   Training back;
   Sightings seen;
@@ -303,7 +326,7 @@ TEST_F(Store, TrainingMustFitTheFields) {
   EXPECT_EQ(back.w.visits, training.w.visits);
   EXPECT_EQ(back.views.counts, training.views.counts);
   ASSERT_EQ(seen.size(), 2u);
-  EXPECT_EQ(seen.at(CellKey(2) << 59).normal, glm::i64vec3(1, 2, 3));
+  EXPECT_EQ(seen.at(CellKey(2) << 60).normal, glm::i64vec3(1, 2, 3));
   Reader again(path, kind);
   EXPECT_THROW(read(again, small, back), Error);
 }

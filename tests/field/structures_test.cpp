@@ -71,11 +71,11 @@ TEST(Patches, AreOfEqualAngle) {
 TEST(Patches, LessonsStayInTheirPatch) {
   for (const Structure structure : {Structure::grid, Structure::probes}) {
     const Fields blank = one_cell(structure);
-    EXPECT_NEAR(pdf(blank, blank.q, 0, towards(2, 7)), 1 / (2 * pi), 1e-4) << "knows nothing yet";
+    EXPECT_NEAR(pdf(blank, blank.q, 0, somewhere, towards(2, 7)), 1 / (2 * pi), 1e-4) << "knows nothing yet";
     Training t = start_training(blank);
     for (int zone = 0; zone < zones; ++zone)
       for (int s = 0; s < segments; ++s)
-        record(blank, blank.q, t.q, 0, towards(zone, s), zone == 4 && s == 3 ? 9 : 1, 2);
+        record(blank, blank.q, t.q, 0, {somewhere, towards(zone, s), 1, zone == 4 && s == 3 ? 9.0f : 1.0f, 2});
     const Fields f = learn(blank, t, {}, 1, {});
     for (int zone = 0; zone < zones; ++zone)
       for (int s = 0; s < segments; ++s)
@@ -87,14 +87,14 @@ TEST(Patches, LessonsStayInTheirPatch) {
     const float floor = 0.03f * irradiance / pi;
     const double share = structure == Structure::grid ? (9 + floor) / (8 + 72 * (1 + floor))
                                                       : (9 + floor) * cosine / (8 * cosine + pi * (1 + floor));
-    EXPECT_NEAR(pdf(f, f.q, 0, towards(4, 3)) * patch_angle, share, 2e-4);
+    EXPECT_NEAR(pdf(f, f.q, 0, somewhere, towards(4, 3)) * patch_angle, share, 2e-4);
     Sampler sampler = make_sampler(SamplerKind::independent, 3, Side::camera, 0, 0);
     double drawn = 0;
     for (int i = 0; i < 20000; ++i) {
       float p;
-      const Vec3 w = sample(f, f.q, 0, sampler.next2(), p);
+      const Vec3 w = sample(f, f.q, 0, somewhere, sampler.next2(), p);
       ASSERT_NEAR(glm::length(w), 1, 1e-5);
-      EXPECT_NEAR(p, pdf(f, f.q, 0, w), 1e-5f * p);
+      EXPECT_NEAR(p, pdf(f, f.q, 0, somewhere, w), 1e-5f * p);
       drawn += glm::dot(w, towards(4, 3)) > 0.999f ? 1 / 20000.0 / p : 0;
     }
     EXPECT_NEAR(drawn, 2 * pi * 0.001, 6e-4) << "a small cap within the patch has its solid angle";
@@ -105,8 +105,8 @@ TEST(Rules, MaxTakesTheBestForAll) {
   for (const Rule rule : {Rule::expected, Rule::max, Rule::returned}) {
     const Fields blank = one_cell(Structure::probes, rule);
     Training t = start_training(blank);
-    record(blank, blank.q, t.q, 0, towards(4, 3), 9, 2);
-    record(blank, blank.q, t.q, 0, towards(1, 3), 2, 2);
+    record(blank, blank.q, t.q, 0, {somewhere, towards(4, 3), 1, 9, 2});
+    record(blank, blank.q, t.q, 0, {somewhere, towards(1, 3), 1, 2, 2});
     record_direct(blank.q, t.q, 0, 5);
     const Fields f = learn(blank, t, {}, 1, {});
     EXPECT_EQ(f.rule, rule) << "goes from lesson to lesson";
@@ -121,7 +121,7 @@ TEST(Rates, VisitsKeepAllEvidence) {
   Fields f = one_cell(Structure::grid);
   for (const float value : {1.0f, 2.0f, 6.0f}) {
     Training t = start_training(f);
-    record(f, f.q, t.q, 0, towards(4, 3), value, 1);
+    record(f, f.q, t.q, 0, {somewhere, towards(4, 3), 1, value, 1});
     f = learn(f, t, {}, 1, visits);
   }
   EXPECT_FLOAT_EQ(f.q.mean[find_stratum(f, f.q, 0, towards(4, 3))], 3) << "1 / (1 + visits) makes the mean of all";

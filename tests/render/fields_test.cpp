@@ -123,20 +123,23 @@ TEST_P(LearnedFields, SampleAgreesWithDensity) {
       // Three of the most trusted, three of all.
       const uint32_t cell = k < 3 ? trusted[k] : uint32_t((k - 3) * f.cells.size() / 3);
       divided += field.nodes[field.cells[cell].root].divided != 0;
-      // The strata are over the cell's own hemisphere; there the map is measured in the square, where they are flat.
+      // The strata are over the cell's own hemisphere; there the map is measured in the square, where they are flat but
+      // for the way from the cell's centre to a point beside it.
+      const float edge = f.table.edge(level_of(f.cells[cell].key));
+      const Vec3 beside = f.cells[cell].center + edge * (0.4f * f.cells[cell].frame.s - 0.3f * f.cells[cell].frame.t);
       const auto r = kit::chi_square_square(
           [&](const Vec2& u) -> std::optional<Vec2> {
             float p;
-            const Vec3 w = sample(f, field, cell, u, p);
+            const Vec3 w = sample(f, field, cell, beside, u, p);
             if (!(p > 0)) return std::nullopt;
             EXPECT_NEAR(glm::length(w), 1, 1e-5);
             return flat(f, f.cells[cell].frame.to_local(w));
           },
           [&](const Vec2& at) {
             const Vec3 local = unflat(f, at);
-            return double(pdf(f, field, cell, f.cells[cell].frame.to_world(local)) / flat_density(f, local));
+            return double(pdf(f, field, cell, beside, f.cells[cell].frame.to_world(local)) / flat_density(f, local));
           },
-          {.rows = rows, .columns = columns, .samples = 60'000, .quadrature = 4, .level = 1e-6});
+          {.rows = rows, .columns = columns, .samples = 60'000, .quadrature = 8, .level = 1e-6});
       EXPECT_TRUE(r.ok) << "cell " << cell << ": " << r.message;
     }
   }

@@ -11,10 +11,21 @@
 
 namespace ajar {
 
-/// Name of a cell: level, direction of the normal (26 bins), integer coordinates at that level; never 0.
+/// Name of a cell: level, compartment of its cube of level 0, direction of the normal (26 bins), integer coordinates at
+/// that level; never 0.
 using CellKey = uint64_t;
 
-inline constexpr int most_cell_levels = 10;
+inline constexpr int most_cell_levels = 9;
+/// Of a cube of level 0.
+inline constexpr int most_compartments = 16;
+/// Cubes of level 0 along an axis.
+inline constexpr int top_cubes = 13;
+
+/// A plane across a cube of level 0. What is on either side of it: another cut, or ~compartment.
+struct CellCut {
+  float at = 0;  ///< world coordinate along the axis
+  int32_t axis = 0, below = ~0, above = ~0;
+};
 
 /// A point on a surface, with a hemisphere on either side of it.
 struct Probe {
@@ -30,8 +41,10 @@ struct CellTable {
     bool divided = false;
   };
   Vec3 origin{0};
-  float width = 1;            ///< edge of the cubes of level 0
-  std::vector<Slot> slots;    ///< a power of two of them
+  float width = 1;          ///< edge of the cubes of level 0
+  std::vector<Slot> slots;  ///< a power of two of them
+  std::vector<CellCut> cuts;
+  std::vector<int32_t> compartments;  ///< per cube of level 0: its first cut, or ~0; empty: nothing is cut
   std::vector<Probe> probes;  ///< not empty: cells are theirs, not cubes; a kd-tree: the middle of a range divides it
   size_t used = 0;
 
@@ -47,6 +60,10 @@ struct Place {
 CellTable make_cell_table(const Vec3& center, float radius);
 /// area: of the surfaces that the probes stand for [m^2].
 CellTable make_probe_table(std::vector<Probe> probes, double area);
+/// Which of 27 ranges of directions a normal is in; no cell holds two of them.
+uint32_t normal_bin(const Vec3& n);
+/// Number of the cube of level 0 around a point; past the last one where there is none.
+size_t top_cube(const CellTable& table, const Vec3& p);
 /// n: unit normal on the side that matters.
 Place find(const CellTable& table, const Vec3& p, const Vec3& n);
 void insert(CellTable& table, CellKey key, uint32_t cell);
@@ -56,6 +73,7 @@ void set_divided(CellTable& table, CellKey key);
 int level_of(CellKey key);
 /// The cube of a cell; of a probe, its point.
 Box cube_of(const CellTable& table, CellKey key);
+Vec3 middle_of(const CellTable& table, CellKey key);
 /// Key of the cell that contains this one, 0 at level 0.
 CellKey parent_of(CellKey key);
 

@@ -21,6 +21,7 @@ struct FieldCell {
   float total = 0;   ///< irradiance: direct and over all strata
   float mix = 0;     ///< g of (G4) for a diffuse surface: how much the strata are trusted
   float visits = 0;  ///< vertices of subpaths of the side that it guides, per area of the cell and path
+  float near = 0;    ///< 1 / R of (G7): reciprocal of how far away the things are that its strata hold [1/m]
 };
 
 /// One learned field: strata of all cells. Hot: what sampling reads. mean and weight stand beside the nodes.
@@ -35,6 +36,7 @@ struct Field {
 struct Cell {
   CellKey key = 0;
   Frame frame;                  ///< its strata are about frame.n
+  Vec3 center{0};               ///< its strata are as seen from here
   float seen = 0;               ///< vertices since it was made
   uint32_t region = no_region;  ///< the top-level cell that it is part of, by number (views.h)
 };
@@ -76,11 +78,16 @@ struct Fields {
 size_t find_stratum(const Fields& fields, const Field& field, uint32_t cell, const Vec3& local);
 /// The same of a point of the unit square.
 size_t find_stratum(const Field& field, uint32_t cell, Vec2 square);
-/// Density per solid angle of the field's strata in a cell towards unit world direction w: 0 below the cell's horizon.
-float pdf(const Fields& fields, const Field& field, uint32_t cell, const Vec3& w);
-/// Draws a unit world direction in proportion to the field times the cosine at the cell (grid: to the field); leaves
-/// its density per solid angle.
-Vec3 sample(const Fields& fields, const Field& field, uint32_t cell, const Vec2& u, float& pdf);
+/// A direction at a point of a cell as the cell's centre has it, in its frame: towards where the ray leaves the sphere
+/// of radius R about the centre; z > 0 stays so. density: solid angle at the centre per solid angle at the point. (G7)
+Vec3 centered(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p, const Vec3& local,
+              float& density);
+/// Density per solid angle of the field's strata in a cell at point p of it towards unit world direction w: 0 below the
+/// cell's horizon.
+float pdf(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p, const Vec3& w);
+/// Draws a unit world direction at p in proportion to the field times the cosine at the cell (grid: to the field);
+/// leaves its density per solid angle.
+Vec3 sample(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p, const Vec2& u, float& pdf);
 /// Bytes of all that is learned.
 size_t bytes(const Fields& fields);
 

@@ -15,6 +15,7 @@ namespace ajar {
 struct Guide {
   Frame frame;       ///< shading frame, turned as twosided, bump and normal maps asked
   Vec3 ng{0, 0, 1};  ///< geometric normal on the shading normal's side
+  Vec3 p{0};         ///< the vertex
   Vec3 wo{0};        ///< world direction to the previous vertex
   Vec3 wo_local{0};
   float adjoint = 1;         ///< |wo.ns| / |wo.ng|: half of the shading-normal correction (Veach 1997, equation 5.19)

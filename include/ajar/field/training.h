@@ -21,6 +21,7 @@ struct Tallies {
   std::vector<int64_t> value;            ///< 16 per node: weight times value, in fixed point
   std::vector<int64_t> weight;           ///< 16 per node
   std::vector<int64_t> direct;           ///< per cell
+  std::vector<int64_t> held, nearness;   ///< per cell: the sums of (G8), of 1 and of 1 / distance
   std::vector<int64_t> directs, visits;  ///< per cell: how many
 };
 
@@ -35,10 +36,15 @@ struct Training {
 
 Training start_training(const Fields& fields);
 
-/// A segment seen from its cell: direction w (unit, world), the field's value there, and the record's weight:
-/// the reciprocal of the density with which such segments are made, in units of that of a cosine lobe.
-void record(const Fields& fields, const Field& field, Tallies& tallies, uint32_t cell, const Vec3& w, float value,
-            float weight);
+/// A segment as its cell gets to know it.
+struct Record {
+  Vec3 p{0};           ///< where in the cell it ends
+  Vec3 w{0, 0, 1};     ///< unit world direction to the other end
+  float distance = 1;  ///< to the other end
+  float value = 0;     ///< the field's, from there
+  float weight = 1;  ///< reciprocal of the density with which such segments are made, in units of that of a cosine lobe
+};
+void record(const Fields& fields, const Field& field, Tallies& tallies, uint32_t cell, const Record& record);
 /// The same at a point of the unit square, of a field whose cells are such squares.
 void record_square(const Field& field, Tallies& tallies, uint32_t cell, const Vec2& at, float value, float weight);
 /// Irradiance (or the lens's importance) that a vertex in the cell got from next-event estimation; zeros too.

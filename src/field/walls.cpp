@@ -1,0 +1,180 @@
+#include "ajar/field/walls.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "ajar/core/parallel.h"
+#include "ajar/core/sampler.h"
+#include "ajar/core/warp.h"
+#include "ajar/scene/bsdf.h"
+#include "ajar/scene/geometry.h"
+#include "ajar/scene/light.h"
+
+namespace ajar {
+namespace {
+
+constexpr uint32_t walks = 2048, bounces = 16;  // of the camera, and as many of the lights
+constexpr size_t most_points = 64;              // of a cube
+
+// A point on a surface and its normal on the side where light can come from.
+struct Spot {
+  Vec3 p{0}, n{0, 0, 1};
+};
+
+struct Ray {
+  Vec3 o{0}, d{0, 0, 1};
+  float t_min = 0, t_max = infinity;
+};
+
+bool start(const Scene& scene, Side side, Sampler& sampler, Ray& out) {
+  const Vec2 u = sampler.next2(), v = sampler.next2();
+  if (side == Side::camera) {
+    const Camera& c = scene.camera;
+    const CameraRay ray = generate(c, Vec2(c.crop_x, c.crop_y) + u * Vec2(c.crop_width, c.crop_height), v);
+    out = {ray.o, ray.d, ray.t_min, ray.t_max};
+    return true;
+  }
+  if (scene.lights.empty()) return false;
+  const uint32_t light =
+      std::min(uint32_t(sampler.next1() * float(scene.lights.size())), uint32_t(scene.lights.size() - 1));
+  EmissionSample e;
+  if (!sample_emission(scene, light, u, v, e)) return false;
+  out = {e.point.p, e.direction};
+  if (!e.point.infinite && !e.point.delta_position) out.o = offset(e.point.p, e.point.n, e.point.error, e.direction);
+  return true;
+}
+
+// As if all surfaces were matt and lost nothing; what is clear is passed straight.
+void walk(const Scene& scene, const Accel& accel, Side side, uint32_t number, std::vector<Spot>& out) {
+  Sampler sampler = make_sampler(SamplerKind::independent, 0, side, number, 0);
+  Ray ray;
+  if (!start(scene, side, sampler, ray)) return;
+  for (uint32_t i = 0; i < bounces; ++i) {
+    Hit hit;
+    if (!accel.intersect(ray.o, ray.d, ray.t_min, ray.t_max, hit)) return;
+    const Surface surface = make_surface(scene, hit, ray.o, ray.d);
+    const Vec3 n = glm::dot(surface.ng, ray.d) > 0 ? -surface.ng : surface.ng;
+    Frame frame = surface.frame;
+    Bsdf bsdf;
+    resolve(scene, surface, -ray.d, frame, bsdf);
+    const Vec2 u = sampler.next2();
+    if (bsdf.has_smooth) {
+      out.push_back({surface.p, n});
+      ray.d = make_frame(n).to_world(to_cosine_hemisphere(u));
+    }
+    ray = {offset(surface.p, surface.ng, surface.error, ray.d), ray.d};
+  }
+}
+
+// What walks found, cube by cube; some of it where there is much.
+std::vector<std::vector<Spot>> spots_of_cubes(const Scene& scene, const Accel& accel, const CellTable& table) {
+  std::vector<std::vector<Spot>> found(2 * walks), cubes(table.compartments.size());
+  parallel_for(2 * walks, [&](uint32_t i) { walk(scene, accel, i % 2 ? Side::light : Side::camera, i / 2, found[i]); });
+  for (const std::vector<Spot>& spots : found)
+    for (const Spot& s : spots)
+      if (const size_t cube = top_cube(table, s.p); cube < cubes.size()) cubes[cube].push_back(s);
+  for (std::vector<Spot>& cube : cubes) {
+    if (cube.size() <= most_points) continue;
+    for (size_t i = 0; i < most_points; ++i) cube[i] = cube[i * cube.size() / most_points];
+    cube.resize(most_points);
+  }
+  return cubes;
+}
+
+// One cube: its points; which others would share a cell with each, and which each sees, as rows of bits.
+struct Sight {
+  std::vector<Spot> spots;
+  std::vector<uint64_t> like, sees;
+};
+
+Sight look(const Accel& accel, std::vector<Spot> spots, float lift) {
+  Sight s{std::move(spots), {}, {}};
+  s.like.assign(s.spots.size(), 0), s.sees.assign(s.spots.size(), 0);
+  for (size_t i = 0; i < s.spots.size(); ++i)
+    for (size_t j = 0; j < i; ++j) {
+      if (normal_bin(s.spots[i].n) == normal_bin(s.spots[j].n))
+        s.like[i] |= uint64_t(1) << j, s.like[j] |= uint64_t(1) << i;
+      const Vec3 a = s.spots[i].p + lift * s.spots[i].n, b = s.spots[j].p + lift * s.spots[j].n;
+      if (!accel.occluded(a, b - a, 1)) s.sees[i] |= uint64_t(1) << j, s.sees[j] |= uint64_t(1) << i;
+    }
+  return s;
+}
+
+struct Plane {
+  float at = 0;
+  int axis = -1;  // -1: none
+  float score = 0;
+};
+
+// The plane that the most pairs of points lie on two sides of and do not see each other, where it parts points that
+// would share a cell, and next to none of these see each other.
+Plane best_plane(const Sight& s, std::vector<uint32_t> of, float edge) {
+  constexpr float most_seen = 0.25f;
+  constexpr int least_pairs = 16;
+  const size_t n = of.size();
+  Plane best;
+  uint64_t all = 0;
+  for (const uint32_t i : of) all |= uint64_t(1) << i;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto x = [&](size_t k) { return s.spots[of[k]].p[axis]; };
+    std::sort(of.begin(), of.end(), [&](uint32_t a, uint32_t b) {
+      return std::pair(s.spots[a].p[axis], a) < std::pair(s.spots[b].p[axis], b);
+    });
+    uint64_t below = 0;
+    int pairs = 0, across = 0, hidden = 0;
+    for (size_t k = 0; k + 1 < n; ++k) {
+      const auto moved = [&](uint64_t with) {
+        return std::popcount(with & all & ~below) - std::popcount(with & below);
+      };
+      const uint64_t like = s.like[of[k]], sees = s.sees[of[k]];
+      pairs += moved(like), across += moved(like & sees), hidden += moved(~sees & ~(uint64_t(1) << of[k]));
+      below |= uint64_t(1) << of[k];
+      if (pairs < least_pairs || x(k + 1) - x(k) < 1e-3f * edge) continue;
+      const float score = float(hidden) * (1 - float(across) / (most_seen * float(pairs)));
+      if (score > best.score) best = {0.5f * (x(k) + x(k + 1)), axis, score};
+    }
+  }
+  return best;
+}
+
+// Cuts a compartment as often as pays; returns what leads to it: a cut's index, or ~side.
+int32_t cut(const Sight& s, const std::vector<uint32_t>& of, float edge, int& sides, std::vector<CellCut>& cuts) {
+  const Plane plane = sides < most_compartments ? best_plane(s, of, edge) : Plane{};
+  if (plane.axis < 0) return ~(sides - 1);
+  std::vector<uint32_t> below, above;
+  for (const uint32_t i : of) (s.spots[i].p[plane.axis] < plane.at ? below : above).push_back(i);
+  const int32_t here = int32_t(cuts.size());
+  cuts.push_back({plane.at, plane.axis, 0, 0});
+  const int32_t first = cut(s, below, edge, sides, cuts);
+  ++sides;
+  const int32_t second = cut(s, above, edge, sides, cuts);
+  cuts[size_t(here)].below = first, cuts[size_t(here)].above = second;
+  return here;
+}
+
+}  // namespace
+
+void cut_along_walls(const Scene& scene, const Accel& accel, CellTable& table) {
+  table.compartments.assign(size_t(top_cubes) * top_cubes * top_cubes, ~0);
+  const std::vector<std::vector<Spot>> cubes = spots_of_cubes(scene, accel, table);
+  std::vector<std::vector<CellCut>> cuts(cubes.size());
+  parallel_for(cubes.size(), [&](size_t c) {
+    if (cubes[c].size() < 8) return;
+    std::vector<uint32_t> of(cubes[c].size());
+    std::iota(of.begin(), of.end(), 0);
+    int sides = 1;
+    cut(look(accel, cubes[c], table.width / 64), of, table.width, sides, cuts[c]);
+  });
+  for (size_t c = 0; c < cubes.size(); ++c) {
+    if (cuts[c].empty()) continue;
+    const int32_t shift = int32_t(table.cuts.size());
+    table.compartments[c] = shift;
+    for (CellCut k : cuts[c]) {
+      if (k.below >= 0) k.below += shift;
+      if (k.above >= 0) k.above += shift;
+      table.cuts.push_back(k);
+    }
+  }
+}
+
+}  // namespace ajar
