@@ -16,7 +16,7 @@ struct Nearness : testing::Test {
   float edge = 0;
 
   void SetUp() override {
-    fields.table = make_cell_table(Vec3(0), 6);
+    fields.table = make_cell_table(Vec3(0), 9);
     Sightings seen;
     for (int i = 0; i < 4; ++i) record_missing(seen, find(fields.table, Vec3(0), up).missing, up);
     fields = learn(fields, start_training(fields), seen, 1, {});
@@ -75,7 +75,7 @@ TEST_F(Nearness, DensitiesIntegrateToOne) {
   for (const float side : {0.0f, 0.45f, 3.0f}) {  // the last far outside: of a surface that bends away
     const Vec3 p = cell().center + edge * side * cell().frame.s;
     double sum = 0;
-    constexpr int n = 400;
+    constexpr int n = 1000;
     for (int i = 0; i < n; ++i)
       for (int j = 0; j < n; ++j) {
         const float z = (float(i) + 0.5f) / n, phi = 2 * pi * (float(j) + 0.5f) / n, r = safe_sqrt(1 - z * z);
