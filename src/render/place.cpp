@@ -107,7 +107,7 @@ void select_lights(const Job& job, uint32_t pass, uint32_t number, LightStore& s
   std::vector<LightStore::Place> kept;
   for (LightStore::Place& at : store.places) {
     const Worth worth = worth_of(store.subpath(at).back());
-    const double chance = std::min((worth.image + v.per_flux * worth.flux) / v.least, 1.0);
+    const double chance = std::min((worth.image + v.per_flux * worth.flux) / v.least, 1.0);  // (I2)
     if (!(double(hash(key, uint64_t(at.path) << 32 | uint32_t(at.s)) >> 11) * 0x1p-53 < chance)) continue;
     at.counts = float(1 / chance);
     kept.push_back(at);
@@ -154,7 +154,7 @@ double density_of_lights(const Job& job, const Vec3& p, const Vec3& ng, const Ve
   constexpr double grey = 0.5;  // not the vertex's own albedo: a share must not depend on where it is seen from
   const double brings = grey * inv_pi * double(importance.total - importance.direct);
   const double arrives = double(v.paths) * double(fields->q.cells[cell].total);
-  return std::min(traced, arrives * std::max(brings, 0.0) / v.least);  // (I2)
+  return std::min(traced, arrives * std::max(brings, 0.0) / v.least);
 }
 
 void measure_lights(const Job& job, std::vector<Scratch>& scratches, Vpls& vpls) {

@@ -43,7 +43,7 @@ float weigh(const Work& work, Candidate& c) {
 float share_of_camera(const Work& work, Candidate& c) {
   if (!is_caustic(work.scratch.camera, c.camera.n)) return 1;
   c.shares.inner = 0;
-  return float(mis_of_camera(work.job.walk.heuristic, c.light, c.camera, c.shares));
+  return float(mis_of_camera(work.job.walk.heuristic, c.light, c.camera, c.shares));  // (I3)
 }
 
 bool is_free(Work& work, const Candidate& c, int s, int t) {
@@ -53,10 +53,10 @@ bool is_free(Work& work, const Candidate& c, int s, int t) {
 }
 
 // The share of a path that joins have whose edge is x - y, of all that could find it: the rest is for the walk from x
-// to y. Of the edge alone, so that both ways say the same. walked: area density of y as the walk from x finds it. (I1)
+// to y. Of the edge alone, so that both ways say the same. walked: area density of y as the walk from x finds it.
 double share_of_joins(const Job& job, const Vec3& y, const Vec3& ng, const Vec3& to_x, double walked) {
   const double lights = density_of_lights(job, y, ng, to_x);
-  return lights > 0 ? lights / (lights + walked) : 0;
+  return lights > 0 ? lights / (lights + walked) : 0;  // (I1)
 }
 
 // Whether the walk is to find what its last vertex y scatters, which joins at the one before could have found as well.
