@@ -100,6 +100,8 @@ void trace_path(const Job&, Sample&, Scratch&);
 void trace_bdpt(const Job&, Sample&, Scratch&);
 void trace_light(const Job&, Sample&, Scratch&);
 void trace_vpl(const Job&, Sample&, Scratch&);
+/// How many lights and joins there are to be.
+Vpls make_vpls(const Scene&, const Film&, bool guided);
 /// Lights per area at a point of a surface, on the side of direction w: of all that are kept, as far as fields know. A
 /// function of the place, whatever the pass's lights are.
 double density_of_lights(const Job& job, const Vec3& p, const Vec3& ng, const Vec3& w);

@@ -2,6 +2,7 @@
 // expects to bring something to the image, in proportion to how much (docs/method.md, "Virtual point lights").
 
 #include "ajar/core/parallel.h"
+#include "ajar/field/probes.h"
 #include "job.h"
 
 namespace ajar {
@@ -63,6 +64,9 @@ void trace_lights(const Job& job, Sampler sampler, Scratch& scratch, Part& out) 
   }
   add(out.store, light, walk.first_share);
 }
+
+// Lights that a guided pass keeps, about.
+constexpr uint32_t kept_lights = 1024;
 
 constexpr uint32_t grain = 16;  // light subpaths of a part
 
@@ -141,6 +145,19 @@ void put_in_order(const Scene& scene, LightStore& store) {
 }
 
 }  // namespace
+
+Vpls make_vpls(const Scene& scene, const Film& film, bool guided) {
+  Vpls v;
+  v.splats.resize(chunk_count(film));
+  // Where nothing is learned: as if two vertices of each subpath were spread over all surfaces.
+  v.even = 2 / std::max(area(scene), 1e-30);
+  if (!guided) return v;
+  // Where fields tell which of many light subpaths the image needs, there are many; else as few as all pixels can use.
+  v.paths = uint32_t(std::clamp<size_t>(film.pixels() / 4, 256, 8192));
+  v.most = kept_lights;
+  v.joins = 12;
+  return v;
+}
 
 double density_of_lights(const Job& job, const Vec3& p, const Vec3& ng, const Vec3& w) {
   const Fields* fields = job.walk.fields;

@@ -8,7 +8,6 @@
 
 #include "ajar/core/error.h"
 #include "ajar/core/parallel.h"
-#include "ajar/field/probes.h"
 #include "job.h"
 
 namespace ajar {
@@ -229,22 +228,6 @@ void note_rejected(RenderStats& stats, const std::vector<uint64_t>& pixels, cons
     if (p != Scratch::no_path && stats.replay.size() < 5)
       stats.replay.push_back(fmt::format("pixel {},{} pass {} seed {}", p % uint64_t(film.width),
                                          p / uint64_t(film.width), film.dropped + film.passes, seed));
-}
-
-// Lights that a guided pass keeps, about.
-constexpr uint32_t kept_lights = 1024;
-
-// Where fields tell which of many light subpaths the image needs, there are many, else as few as all pixels can use.
-// Lights per area where nothing is learned: as if two of each subpath were spread over all surfaces.
-Vpls make_vpls(const Scene& scene, const Film& film, bool guided) {
-  Vpls v;
-  v.splats.resize(chunk_count(film));
-  v.even = 2 / std::max(area(scene), 1e-30);
-  if (!guided) return v;
-  v.paths = uint32_t(std::clamp<size_t>(film.pixels() / 4, 256, 8192));
-  v.most = kept_lights;
-  v.joins = 12;
-  return v;
 }
 
 // The job of a pass that joins virtual point lights, which it places.
