@@ -41,6 +41,13 @@ double mis_weight(Heuristic h, const End& light, const End& camera, const Shares
   return here / (here + fewer_light + fewer_camera);
 }
 
+double mis_of_camera(Heuristic h, const End& light, const End& camera, const Shares& shares) {
+  const double nee = raise(h, shares.light_first), film = raise(h, shares.camera_first), inner = raise(h, shares.inner);
+  const double fewer_light = handed_over(h, light, nee, inner, 0),
+               fewer_camera = handed_over(h, camera, film, inner, 0);
+  return fewer_light > 0 ? fewer_light / (fewer_light + fewer_camera) : fewer_camera > 0 ? 0 : 1;
+}
+
 MergeSide merge_side(Heuristic h, const End& end, double back, const Shares& shares, Side side) {
   const double own = raise(h, ratio(1, end.own));
   const double first = raise(h, side == Side::light ? shares.light_first : shares.camera_first);

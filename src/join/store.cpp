@@ -3,6 +3,8 @@
 #include <array>
 
 namespace ajar {
+using Values = std::array<float, LightStore::width>;
+
 namespace {
 
 // 1 / own density, in units of the density with which a cosine lobe at the other end would find the vertex.
@@ -17,13 +19,11 @@ void put(LightStore::Block& b, uint32_t i, const Vertex& v, const LightStore::Pl
   const Vec3 n = v.guide.frame.n;
   b.x[i] = v.p.x, b.y[i] = v.p.y, b.z[i] = v.p.z;
   b.nx[i] = n.x, b.ny[i] = n.y, b.nz[i] = n.z;
-  b.flux[i] = flux_of(v);
+  b.flux[i] = flux_of(v) * at.counts;
   b.near[i] = near;
   b.behind[i] = v.guide.bsdf.opaque ? 0.0f : -1.0f;
   b.region[i] = at.region, b.s[i] = at.s;
 }
-
-using Values = std::array<float, LightStore::width>;
 
 // What joins bring, up to a factor that all of a camera vertex share: unoccluded, both ends taken for diffuse, with the
 // weight against the camera subpath that finds the light vertex, or the light subpath that finds the camera's.
@@ -51,7 +51,7 @@ void add(LightStore& store, const Subpath& light, double share) {
   for (int s = 2; s <= light.n; ++s) {
     const Vertex& v = light[s - 1];
     if (!connectable(v.guide) || !(flux_of(v) > 0)) continue;
-    store.places.push_back({first, s, region_of(v.guide), share});
+    store.places.push_back({first, s, region_of(v.guide), share, store.paths - 1});
     last = s;
   }
   store.vertices.insert(store.vertices.end(), light.vertices.begin(), light.vertices.begin() + last);
@@ -60,12 +60,15 @@ void add(LightStore& store, const Subpath& light, double share) {
 namespace {
 // near: of a place, by its number.
 template <class Near>
-void make_blocks(LightStore& store, const Near& near) {
+void make_blocks(LightStore& store, const Near& near, bool in_order) {
   const uint32_t all = uint32_t(store.places.size()), n = (all + LightStore::width - 1) / LightStore::width;
   store.blocks.assign(n, {});
   for (uint32_t i = 0; i < all; ++i) {
     const LightStore::Place& at = store.places[i];
-    put(store.blocks[i % n], i / n, store.subpath(at).back(), at, near(i));
+    if (in_order)
+      put(store.blocks[i / LightStore::width], i % LightStore::width, store.subpath(at).back(), at, near(i));
+    else
+      put(store.blocks[i % n], i / n, store.subpath(at).back(), at, near(i));
   }
 }
 
@@ -77,18 +80,20 @@ void apply_chances(const LightStore::Block& b, const Vertex& camera, Values& val
 }  // namespace
 
 void finish(LightStore& store, double inner) {
-  make_blocks(store, [&](uint32_t i) { return near_of(store.subpath(store.places[i]).back(), inner); });
+  make_blocks(
+      store, [&](uint32_t i) { return near_of(store.subpath(store.places[i]).back(), inner); }, false);
 }
 
 void finish(LightStore& store, std::span<const float> near) {
-  make_blocks(store, [&](uint32_t i) { return near[i]; });
+  make_blocks(
+      store, [&](uint32_t i) { return near[i]; }, true);
 }
 
 void append(LightStore& store, const LightStore& more) {
   const uint32_t shift = uint32_t(store.vertices.size());
   store.vertices.insert(store.vertices.end(), more.vertices.begin(), more.vertices.end());
   for (LightStore::Place at : more.places) {
-    at.first += shift;
+    at.first += shift, at.path += store.paths;
     store.places.push_back(at);
   }
   store.paths += more.paths;
@@ -115,27 +120,37 @@ bool choose(const LightStore& store, const Vertex& camera, double inner, int mos
   return true;
 }
 
-void choose_some(const LightStore& store, const Vertex& camera, int most, int count, float u, std::vector<float>& sums,
-                 std::vector<StoreChoice>& out) {
-  const size_t n = store.blocks.size();
-  out.clear();
-  sums.resize(n * LightStore::width);
+float expect_all(const LightStore& store, const Vertex& camera, int most, Expectation& out) {
+  out.values.resize(store.blocks.size());
+  out.sums.resize(store.blocks.size());
   float sum = 0;
-  for (size_t block = 0; block < n; ++block) {
-    Values values;
+  for (size_t block = 0; block < store.blocks.size(); ++block) {
+    Values& values = out.values[block];
     expect(store.blocks[block], camera, 0, most, values);
     apply_chances(store.blocks[block], camera, values);
-    for (uint32_t i = 0; i < LightStore::width; ++i) sums[block * LightStore::width + i] = sum += values[i];
+    std::array<float, 8> part{};
+    for (uint32_t i = 0; i < LightStore::width; ++i) part[i % 8] += values[i];
+    out.sums[block] = sum += ((part[0] + part[1]) + (part[2] + part[3])) + ((part[4] + part[5]) + (part[6] + part[7]));
   }
+  return sum / float(std::max(store.paths, 1u));
+}
+
+void choose_some(const LightStore& store, const Expectation& expected, int count, float u,
+                 std::vector<StoreChoice>& out) {
+  out.clear();
+  const float sum = expected.sums.empty() ? 0 : expected.sums.back();
   if (!(sum > 0) || !(sum < infinity)) return;
-  size_t at = 0;
+  size_t block = 0;
   for (int k = 0; k < count; ++k) {
     const float mark = (float(k) + u) / float(count) * sum;
-    while (at + 1 < sums.size() && !(mark < sums[at])) ++at;
-    const float value = sums[at] - (at > 0 ? sums[at - 1] : 0);
-    if (!(value > 0)) continue;  // rounding, behind the last
-    const uint32_t i = uint32_t(at % LightStore::width), block = uint32_t(at / LightStore::width);
-    out.push_back({&store.places[i * n + block], float(double(sum) / (double(count) * value * store.paths))});
+    while (block + 1 < expected.sums.size() && !(mark < expected.sums[block])) ++block;
+    const Values& values = expected.values[block];
+    float rest = mark - (block > 0 ? expected.sums[block - 1] : 0);
+    uint32_t i = 0;
+    while (i + 1 < LightStore::width && !(rest < values[i])) rest -= values[i++];
+    if (!(values[i] > 0)) continue;  // rounding
+    const LightStore::Place& place = store.places[block * LightStore::width + i];
+    out.push_back({&place, float(place.counts * double(sum) / (double(count) * values[i] * store.paths))});
   }
 }
 

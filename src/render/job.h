@@ -24,9 +24,14 @@ struct Vpls {
   LightStore store;
   uint32_t pass = ~0u;   ///< that they are of
   uint32_t paths = 256;  ///< light subpaths of a pass
-  double worth = 256;    ///< light subpaths that a join with the set counts for against a walked edge (I1)
   double even = 0;       ///< vertices per area and light subpath; read where no field tells
-  int joins = 8;         ///< at each vertex of a camera subpath that can be joined
+  int joins = 8;         ///< at the first vertex of a camera subpath that can be joined
+  int inner_joins = 8;   ///< at others
+  WalkOptions camera;    ///< of camera subpaths: fields are read for the lights alone
+  uint32_t most = 0;     ///< lights that are kept, about
+  double least = 0;      ///< a light that brings this to the image, or more, is sure to be kept; 0: all are
+  double per_flux = 0;   ///< what a light is taken to bring, beside what the field says
+  std::vector<std::vector<Splat>> splats;  ///< of the pass's light subpaths, per chunk of the film
 };
 
 struct Job {
@@ -75,7 +80,7 @@ struct Halves {
 /// Storage of one thread at work on one chunk; kept from chunk to chunk. Threads share no cache line.
 struct alignas(64) Scratch {
   Subpath camera, light;
-  std::vector<float> sums;  ///< of choices
+  Expectation expected;  ///< of choices
   std::vector<StoreChoice> choices;
   Halves* halves = nullptr;  ///< of the chunk
   Halves own_halves;         ///< where those of one chunk are enough
@@ -95,7 +100,14 @@ void trace_path(const Job&, Sample&, Scratch&);
 void trace_bdpt(const Job&, Sample&, Scratch&);
 void trace_light(const Job&, Sample&, Scratch&);
 void trace_vpl(const Job&, Sample&, Scratch&);
-/// Traces the light vertices of a pass.
+/// How many lights and joins there are to be.
+Vpls make_vpls(const Scene&, const Film&, bool guided);
+/// Lights per area at a point of a surface, on the side of direction w: of all that are kept, as far as fields know. A
+/// function of the place, whatever the pass's lights are.
+double density_of_lights(const Job& job, const Vec3& p, const Vec3& ng, const Vec3& w);
+/// Finds out from light subpaths that are in no image how much a light must bring to be kept.
+void measure_lights(const Job&, std::vector<Scratch>&, Vpls&);
+/// Traces the light subpaths of a pass and keeps its lights.
 void place_vpls(const Job&, uint32_t pass, std::vector<Scratch>&, Vpls&);
 /// The first half of guided-bdpt: the light subpath of one sample, put into the chunk's store. The second is
 /// trace_bdpt.

@@ -8,7 +8,6 @@
 
 #include "ajar/core/error.h"
 #include "ajar/core/parallel.h"
-#include "ajar/field/probes.h"
 #include "ajar/field/walls.h"
 #include "job.h"
 
@@ -33,7 +32,7 @@ constexpr Integrator integrators[] = {{"path", trace_path, false},
                                       {"guided-vcm", trace_bdpt, true, true, trace_light_half, true},
                                       {"photon", trace_photon, false, false, trace_photons, true},
                                       {"vpl", trace_vpl, true, true, trace_light_half, false, true},
-                                      {"plain-vpl", trace_vpl, false, false, nullptr, false, true}};
+                                      {"plain-vpl", trace_vpl, true, false, nullptr, false, true}};
 
 const Integrator& find_integrator(const std::string& name) {
   for (const Integrator& i : integrators)
@@ -232,15 +231,18 @@ void note_rejected(RenderStats& stats, const std::vector<uint64_t>& pixels, cons
                                          p / uint64_t(film.width), film.dropped + film.passes, seed));
 }
 
-// Light vertices per area and subpath where nothing is learned: as if two of each were spread over all surfaces.
-double even_density(const Scene& scene) { return 2 / std::max(area(scene), 1e-30); }
-
 // The job of a pass that joins virtual point lights, which it places.
 Job with_vpls(Job job, const Film& film, std::vector<Scratch>& scratches, Vpls& vpls) {
   job.vpls = &vpls;
   job.light_half = nullptr;
-  job.walk.light_paths = 0, job.walk.inner_share = 0;  // the other weights are of s = 0 and s = 1 alone
+  job.walk.light_paths = vpls.paths, job.walk.inner_share = 0;  // the other weights are of s = 0, s = 1 and t = 1 alone
+  vpls.camera = job.walk;
+  vpls.camera.fields = nullptr;
   const uint32_t pass = film.dropped + film.passes;
+  if (vpls.pass == Vpls{}.pass && job.guided) {
+    measure_lights(job, scratches, vpls);
+    for (Scratch& s : scratches) s.counters = {};
+  }
   if (vpls.pass != pass) {
     place_vpls(job, pass, scratches, vpls);
     if (film.chunks > 0)  // a pass that is gone on with: they were counted when it began
@@ -340,7 +342,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   std::vector<Scratch> scratches(size_t(threads.count()));
   Batch batch;
   Vpls vpls;
-  vpls.even = integrator.vpls ? even_density(scene) : 0;
+  if (integrator.vpls) vpls = make_vpls(scene, film, integrator.guided);
   const uint32_t all = chunk_count(film);
   const auto out_of_budget = [&] {
     read_clocks();
@@ -370,6 +372,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
       Job job_now = joins_vpls ? with_vpls(job, film, scratches, vpls) : job;
       job_now.trace = trace;
       for (uint32_t i = 0; i < count; ++i) batch.splats[i].clear(), batch.strategies[i].clear();
+      if (joins_vpls) std::copy_n(vpls.splats.begin() + from, count, batch.splats.begin());
       if (job.walk.merging.paths > 0) {
         trace_merged(job_now, film, from, batch, scratches);
       } else {

@@ -3,7 +3,6 @@
 // what other renderers clamp away is so found by a short walk, and the image is unbiased given the fields
 // (docs/method.md, "Virtual point lights").
 
-#include "ajar/core/parallel.h"
 #include "job.h"
 
 namespace ajar {
@@ -26,10 +25,25 @@ void add(Work& work, const Candidate& c, float weight, int s, int t) {
       {s, t, Vec2(work.sample.x, work.sample.y), c.value * work.sample.filter, filtered});
 }
 
-// Of hits and next-event estimation among each other: nothing else finds what they find.
+// Whether a path of n camera vertices comes to what the lens sees by way of a delta event, at which only light subpaths
+// can aim.
+bool is_caustic(const Subpath& camera, int n) {
+  return n > 3 && !camera[1].delta && camera[2].delta && connectable(camera[1].guide);
+}
+
+// Of hits and next-event estimation among each other, and of what only light subpaths can aim at: nothing else finds
+// what they find.
 float weigh(const Work& work, Candidate& c) {
   c.shares.inner = 0;
+  if (!is_caustic(work.scratch.camera, c.camera.n)) c.camera.sum_before = 0;
   return float(weight(work.job.walk.heuristic, c));
+}
+
+// The same of a path that is joined further up: what is left to all that joins and walks share.
+float share_of_camera(const Work& work, Candidate& c) {
+  if (!is_caustic(work.scratch.camera, c.camera.n)) return 1;
+  c.shares.inner = 0;
+  return float(mis_of_camera(work.job.walk.heuristic, c.light, c.camera, c.shares));  // (I3)
 }
 
 bool is_free(Work& work, const Candidate& c, int s, int t) {
@@ -38,19 +52,11 @@ bool is_free(Work& work, const Candidate& c, int s, int t) {
   return visible(*work.job.accel, c.segment);
 }
 
-// Light vertices per area and light subpath at a point of a surface, on the side of direction w: learned.
-double density_of_lights(const Job& job, const Vec3& p, const Vec3& ng, const Vec3& w) {
-  const Fields* fields = job.walk.fields;
-  if (!fields) return job.vpls->even;
-  const uint32_t cell = find(fields->table, p, glm::dot(ng, w) < 0 ? -ng : ng).cell;
-  return cell == none ? 0 : double(fields->w.cells[cell].visits);
-}
-
 // The share of a path that joins have whose edge is x - y, of all that could find it: the rest is for the walk from x
-// to y. Of the edge alone, so that both ways say the same. walked: area density of y as the walk from x finds it. (I1)
+// to y. Of the edge alone, so that both ways say the same. walked: area density of y as the walk from x finds it.
 double share_of_joins(const Job& job, const Vec3& y, const Vec3& ng, const Vec3& to_x, double walked) {
-  const double lights = job.vpls->worth * density_of_lights(job, y, ng, to_x);
-  return lights > 0 ? lights / (lights + walked) : 0;
+  const double lights = density_of_lights(job, y, ng, to_x);
+  return lights > 0 ? lights / (lights + walked) : 0;  // (I1)
 }
 
 // Whether the walk is to find what its last vertex y scatters, which joins at the one before could have found as well.
@@ -89,8 +95,9 @@ void join_vpls(Work& work) {
   const Subpath& camera = scratch.camera;
   const LightStore& store = job.vpls->store;
   const Vertex& x = camera[camera.n - 1];
-  choose_some(store, x, job.walk.max_edges + 1 - camera.n, job.vpls->joins, work.sample.sampler.next1(), scratch.sums,
-              scratch.choices);
+  expect_all(store, x, job.walk.max_edges + 1 - camera.n, scratch.expected);
+  const int joins = camera.n > 2 ? job.vpls->inner_joins : job.vpls->joins;
+  choose_some(store, scratch.expected, joins, work.sample.sampler.next1(), scratch.choices);
   for (const StoreChoice& choice : scratch.choices) {
     const LightStore::Place& at = *choice.place;
     Candidate c;
@@ -98,63 +105,27 @@ void join_vpls(Work& work) {
       const Vertex& y = store.subpath(at).back();
       const double share = share_of_joins(job, y.p, y.ng, camera[camera.n - 1].p - y.p, c.light.other);
       c.value *= choice.weight;
-      add(work, c, float(share), at.s, camera.n);
+      add(work, c, float(share) * share_of_camera(work, c), at.s, camera.n);
     }
     charge_join(scratch, at.s, camera.n);
   }
 }
 
-// One light subpath of the pass. Passes and paths number the points of one sequence for either half of the image, so
-// that the lights of a pass are evenly spread.
-void trace_lights(const Job& job, uint32_t pass, uint32_t path, Scratch& scratch, LightStore& out) {
-  constexpr uint64_t stream = 0x76706c;
-  const uint32_t point = 2 * ((pass / 2) * job.vpls->paths + path) + pass % 2;
-  Sampler sampler = make_sampler(job.sampler, job.seed, Side::light, stream, point);
-  Subpath& light = scratch.light;
-  Walk walk;
-  light.n = 0;
-  if (start_light(*job.scene, job.walk, sampler, light, walk)) {
-    ++scratch.counters.light_paths;
-    Surface surface;
-    while (light.n < job.walk.max_edges) {
-      if (light.n > 1 && !scatter(job.walk, sampler, light, walk)) break;
-      ++scratch.counters.light_rays;
-      if (!step(*job.scene, *job.accel, job.walk, light, walk, surface)) break;
-    }
-  }
-  add(out, light, walk.first_share);
-}
+// A surface that scatters by delta events alone.
+bool is_clear(const Vertex& v) { return !connectable(v.guide); }
 
-}  // namespace
-
-void place_vpls(const Job& job, uint32_t pass, std::vector<Scratch>& scratches, Vpls& vpls) {
-  constexpr uint32_t grain = 16;
-  std::vector<LightStore> parts((vpls.paths + grain - 1) / grain);
-  parallel_for(parts.size(), [&](size_t part) {
-    for (uint32_t i = uint32_t(part) * grain; i < std::min(vpls.paths, uint32_t(part + 1) * grain); ++i)
-      trace_lights(job, pass, i, scratches[thread_slot()], parts[part]);
-  });
-  clear(vpls.store);
-  for (const LightStore& part : parts) append(vpls.store, part);
-  std::vector<float> near;
-  for (const LightStore::Place& at : vpls.store.places) {
-    const Vertex& v = vpls.store.subpath(at).back();
-    const double lights = vpls.worth * density_of_lights(job, v.p, v.ng, v.guide.wo);
-    near.push_back(float(inv_pi / std::max(lights, 1e-30)));
-  }
-  finish(vpls.store, near);
-}
-
-void trace_vpl(const Job& job, Sample& sample, Scratch& scratch) {
-  Work work{job, sample, scratch};
+// Follows the camera subpath, and joins what can be joined on the way. Stops at the first surface if that is to be
+// followed several times.
+void walk_on(Work& work, Walk& walk) {
+  const Job& job = work.job;
+  Sample& sample = work.sample;
+  Scratch& scratch = work.scratch;
   Subpath& camera = scratch.camera;
-  Walk walk;
-  start_camera(*job.scene, job.walk, sample.raster, sample.lens, camera, walk);
   Surface surface;
   bool walked = true;
   do {
     ++scratch.counters.camera_rays;
-    const bool hit = step(*job.scene, *job.accel, job.walk, camera, walk, surface);
+    const bool hit = step(*job.scene, *job.accel, job.vpls->camera, camera, walk, surface);
     charge(scratch, scratch.ledger->camera_ticks);
     if (!hit) {
       Candidate c;
@@ -165,13 +136,34 @@ void trace_vpl(const Job& job, Sample& sample, Scratch& scratch) {
       return;
     }
     join_lights(work, surface);
+    if (camera.n == 2 && is_clear(camera[1])) return;
     walked = is_walked(work);
     if (!walked || camera.n > job.walk.max_edges || !connectable(camera[camera.n - 1].guide)) continue;
     join_next_event(work);
     join_vpls(work);
-  } while (camera.n <= job.walk.max_edges && scatter(job.walk, sample.sampler, camera, walk) &&
+  } while (camera.n <= job.walk.max_edges && scatter(job.vpls->camera, sample.sampler, camera, walk) &&
            (walked || camera[camera.n - 1].delta));
   charge(scratch, scratch.ledger->camera_ticks);
+}
+
+// So often camera subpaths are followed from a glass or mirror that the lens sees: what they find by chance is bright.
+constexpr int clear_branches = 8;
+
+}  // namespace
+
+void trace_vpl(const Job& job, Sample& sample, Scratch& scratch) {
+  Work work{job, sample, scratch};
+  Subpath& camera = scratch.camera;
+  Walk walk;
+  start_camera(*job.scene, job.vpls->camera, sample.raster, sample.lens, camera, walk);
+  walk_on(work, walk);
+  if (camera.n != 2 || !is_clear(camera[1]) || job.walk.max_edges < 2) return;
+  camera[1].beta /= float(clear_branches);
+  for (int i = 0; i < clear_branches; ++i) {
+    camera.n = 2;
+    Walk branch = walk;
+    if (scatter(job.vpls->camera, sample.sampler, camera, branch)) walk_on(work, branch);
+  }
 }
 
 }  // namespace ajar

@@ -34,6 +34,10 @@ struct Shares {
 /// emission density too.
 double mis_weight(Heuristic h, const End& light, const End& camera, const Shares& shares);
 
+/// Of the strategies that take vertices away from either end of a path of two walked ends, the share of those that take
+/// them from the light's: with inner of 0, what s = 0 and s = 1 count for against t = 1.
+double mis_of_camera(Heuristic h, const End& light, const End& camera, const Shares& shares);
+
 /// What one side of a merge contributes to the sum over the other strategies, relative to a merge's own density over
 /// its MergeEnd::merge, while the density of going back is not known yet: fixed + slope * raise(h, density).
 struct MergeSide {

@@ -2,6 +2,7 @@
 // Leaves: for a camera vertex, one of all their vertices to join, drawn by what it is expected to bring.
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "ajar/core/sampler.h"
@@ -15,7 +16,9 @@ struct LightStore {
     uint32_t first = 0;  ///< of its subpath among the vertices
     int s = 0;           ///< vertices of the subpath up to this one
     uint32_t region = no_region;
-    double share = 1;  ///< of the subpath's walk (walk.h, first_share)
+    double share = 1;   ///< of the subpath's walk (walk.h, first_share)
+    uint32_t path = 0;  ///< number of its subpath
+    float counts = 1;   ///< for how many of its kind it stands, where others were left out
   };
   /// What a choice reads of so many places, side by side. A block is an even sample of all places.
   static constexpr uint32_t width = 32;
@@ -55,9 +58,16 @@ void append(LightStore& store, const LightStore& more);
 /// numbers.
 bool choose(const LightStore& store, const Vertex& camera, double inner, int most, Sampler& sampler, StoreChoice& out);
 
-/// Draws `count` from all places, evenly spaced over the sums of what they would bring (systematic sampling): weights
-/// add up to what all of them stand for. u in [0, 1). sums: storage.
-void choose_some(const LightStore& store, const Vertex& camera, int most, int count, float u, std::vector<float>& sums,
+/// What all places of a store would bring to one camera vertex.
+struct Expectation {
+  std::vector<std::array<float, LightStore::width>> values;  ///< per block
+  std::vector<float> sums;                                   ///< of blocks, up to and with each
+};
+/// Returns what a light subpath is expected to bring, as irradiance. most: largest s.
+float expect_all(const LightStore& store, const Vertex& camera, int most, Expectation& out);
+/// Draws `count` places, evenly spaced over the sums in the order of the places (systematic sampling): weights add up
+/// to what all of them stand for. u in [0, 1).
+void choose_some(const LightStore& store, const Expectation& expected, int count, float u,
                  std::vector<StoreChoice>& out);
 
 }  // namespace ajar

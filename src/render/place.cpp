@@ -1,0 +1,212 @@
+// The virtual point lights of a pass: light subpaths are traced, and of their vertices those are kept that the field W
+// expects to bring something to the image, in proportion to how much (docs/method.md, "Virtual point lights").
+
+#include "ajar/core/parallel.h"
+#include "ajar/field/probes.h"
+#include "job.h"
+
+namespace ajar {
+namespace {
+
+// What a group of light subpaths left.
+struct Part {
+  LightStore store;
+  std::vector<Splat> splats;
+};
+
+// What a light subpath whose last event but one was a delta brings to the lens: camera subpaths could not aim at it.
+// Weights are against s = 0 and s = 1.
+void join_lens(const Job& job, Sampler& sampler, double share, Scratch& scratch, std::vector<Splat>& splats) {
+  const Subpath& light = scratch.light;
+  if (light.n < 3 || !light[light.n - 2].delta || !connectable(light[light.n - 1].guide)) return;
+  const Camera& camera = job.scene->camera;
+  const Vec2 lens = camera.kind == CameraKind::thinlens ? sampler.next2() : Vec2(0);
+  Candidate c;
+  if (!join_camera(*job.scene, lens, light, light.n, share, job.walk.light_paths, c)) return;
+  ++scratch.counters.shadow_rays;
+  if (!visible(*job.accel, c.segment)) return;
+  c.shares.inner = 0;
+  // The film takes as many light subpaths as it has pixels.
+  const double pixels = double(camera.crop_width) * camera.crop_height;
+  c.value *= float(weight(job.walk.heuristic, c) * pixels / job.walk.light_paths);
+  if (c.value.x + c.value.y + c.value.z < infinity) splats.push_back({c.raster, c.value});
+}
+
+// Points of one sequence for either half of the image, numbered by passes and paths, so that the lights of a pass are
+// evenly spread.
+Sampler numbers_of(const Job& job, uint64_t stream, uint32_t pass, uint32_t path) {
+  const uint32_t point = 2 * ((pass / 2) * job.vpls->paths + path) + pass % 2;
+  return make_sampler(job.sampler, job.seed, Side::light, stream, point);
+}
+
+// As camera subpaths see it, which know no fields.
+double share_of_next_event(const Scene& scene, const Subpath& light, const Walk& walk) {
+  Vertex x = light[1];
+  x.guide.fields = nullptr, x.guide.cell = none;
+  return direct_share(scene, x, light[0].point, -walk.d, x.distance2,
+                      {walk.start.pdf_position, walk.start.pdf_direction});
+}
+
+void trace_lights(const Job& job, Sampler sampler, Scratch& scratch, Part& out) {
+  Subpath& light = scratch.light;
+  Walk walk;
+  light.n = 0;
+  if (start_light(*job.scene, job.walk, sampler, light, walk)) {
+    ++scratch.counters.light_paths;
+    Surface surface;
+    while (light.n < job.walk.max_edges) {
+      if (light.n > 1 && !scatter(job.walk, sampler, light, walk)) break;
+      ++scratch.counters.light_rays;
+      if (!step(*job.scene, *job.accel, job.walk, light, walk, surface)) break;
+      if (light.n == 2) walk.first_share = share_of_next_event(*job.scene, light, walk);
+      join_lens(job, sampler, walk.first_share, scratch, out.splats);
+    }
+  }
+  add(out.store, light, walk.first_share);
+}
+
+// Lights that a guided pass keeps, about.
+constexpr uint32_t kept_lights = 1024;
+
+constexpr uint32_t grain = 16;  // light subpaths of a part
+
+std::vector<Part> trace_parts(const Job& job, uint64_t stream, uint32_t pass, std::vector<Scratch>& scratches) {
+  const uint32_t paths = job.vpls->paths;
+  std::vector<Part> parts((paths + grain - 1) / grain);
+  parallel_for(parts.size(), [&](size_t part) {
+    const uint32_t from = uint32_t(part) * grain, to = std::min(paths, from + grain);
+    for (uint32_t i = from; i < to; ++i)
+      trace_lights(job, numbers_of(job, stream, pass, i), scratches[thread_slot()], parts[part]);
+  });
+  return parts;
+}
+
+struct Worth {
+  double image = 0;  // what a light is expected to bring to the image, beyond what the lens sees of it
+  double flux = 0;
+};
+Worth worth_of(const Vertex& v) {
+  return {double(promise(v.guide, v.beta).beyond), double(std::max(luminance(v.beta), 0.0f))};
+}
+
+// So that `count` lights are kept, if each is with the probability value / result, at most 1; 0 to keep all.
+double find_threshold(std::vector<double> values, double count) {
+  std::sort(values.begin(), values.end());
+  double sum = 0;
+  for (const double v : values) sum += v;
+  size_t n = values.size();
+  if (count >= double(n)) return 0;
+  while (n > 0 && values[n - 1] * count > sum) sum -= values[--n], --count;  // these are sure to be kept
+  return count > 0 ? sum / count : 0;
+}
+
+// Share of the choice among lights that goes by flux, whatever the field says.
+constexpr double by_flux = 0.05;
+
+// Keeps some lights of a part. Which depends on each light alone, and on a number of its own: as fields change from
+// frame to frame, most stay.
+void select_lights(const Job& job, uint32_t pass, uint32_t number, LightStore& store) {
+  const Vpls& v = *job.vpls;
+  const uint64_t key = hash(hash(job.seed, 0x6b657074), hash(pass, number));
+  std::vector<LightStore::Place> kept;
+  for (LightStore::Place& at : store.places) {
+    const Worth worth = worth_of(store.subpath(at).back());
+    const double chance = std::min((worth.image + v.per_flux * worth.flux) / v.least, 1.0);  // (I2)
+    if (!(double(hash(key, uint64_t(at.path) << 32 | uint32_t(at.s)) >> 11) * 0x1p-53 < chance)) continue;
+    at.counts = float(1 / chance);
+    kept.push_back(at);
+  }
+  store.places = std::move(kept);
+}
+
+uint64_t spread_bits(uint64_t x) {
+  x = (x | x << 16) & 0x030000ff;
+  x = (x | x << 8) & 0x0300f00f;
+  x = (x | x << 4) & 0x030c30c3;
+  return (x | x << 2) & 0x09249249;
+}
+
+// Along a Morton curve over places, one for each of six ranges of normals, so that lights that are near each other in
+// the order are alike.
+uint64_t place_in_order(const Scene& scene, const Vertex& v) {
+  const Vec3 q = glm::clamp((v.p - scene.center) / (2 * scene.radius) + 0.5f, 0.0f, 1.0f) * 1023.0f;
+  const Vec3 n = v.guide.frame.n, a = glm::abs(n);
+  const int axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
+  const uint64_t range = 2 * uint64_t(axis) + (n[axis] > 0);
+  return range << 32 | spread_bits(uint64_t(q.x)) << 2 | spread_bits(uint64_t(q.y)) << 1 | spread_bits(uint64_t(q.z));
+}
+
+void put_in_order(const Scene& scene, LightStore& store) {
+  std::vector<std::pair<uint64_t, LightStore::Place>> keyed;
+  for (const LightStore::Place& at : store.places)
+    keyed.emplace_back(place_in_order(scene, store.subpath(at).back()), at);
+  std::stable_sort(keyed.begin(), keyed.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (size_t i = 0; i < keyed.size(); ++i) store.places[i] = keyed[i].second;
+}
+
+}  // namespace
+
+Vpls make_vpls(const Scene& scene, const Film& film, bool guided) {
+  Vpls v;
+  v.splats.resize(chunk_count(film));
+  // Where nothing is learned: as if two vertices of each subpath were spread over all surfaces.
+  v.even = 2 / std::max(area(scene), 1e-30);
+  if (!guided) return v;
+  // Where fields tell which of many light subpaths the image needs, there are many; else as few as all pixels can use.
+  v.paths = uint32_t(std::clamp<size_t>(film.pixels() / 4, 256, 8192));
+  v.most = kept_lights;
+  v.joins = 12;
+  return v;
+}
+
+double density_of_lights(const Job& job, const Vec3& p, const Vec3& ng, const Vec3& w) {
+  const Fields* fields = job.walk.fields;
+  const Vpls& v = *job.vpls;
+  if (!job.guided) return v.paths * v.even;
+  const uint32_t cell = find(fields->table, p, glm::dot(ng, w) < 0 ? -ng : ng).cell;
+  if (cell == none) return 0;
+  const FieldCell& importance = fields->w.cells[cell];
+  const double traced = double(v.paths) * double(importance.visits);
+  if (!(v.least > 0)) return traced;
+  constexpr double grey = 0.5;  // not the vertex's own albedo: a share must not depend on where it is seen from
+  const double brings = grey * inv_pi * double(importance.total - importance.direct);
+  const double arrives = double(v.paths) * double(fields->q.cells[cell].total);
+  return std::min(traced, arrives * std::max(brings, 0.0) / v.least);
+}
+
+void measure_lights(const Job& job, std::vector<Scratch>& scratches, Vpls& vpls) {
+  constexpr uint64_t stream = 0x70696c6f74;
+  std::vector<Worth> found;
+  Worth all;
+  for (const Part& part : trace_parts(job, stream, 0, scratches))
+    for (const LightStore::Place& at : part.store.places) {
+      found.push_back(worth_of(part.store.subpath(at).back()));
+      all.image += found.back().image, all.flux += found.back().flux;
+    }
+  vpls.per_flux = all.flux > 0 ? by_flux * all.image / all.flux : 0;
+  std::vector<double> values;
+  for (const Worth& w : found) values.push_back(w.image + vpls.per_flux * w.flux);
+  vpls.least = find_threshold(std::move(values), vpls.most);
+}
+
+void place_vpls(const Job& job, uint32_t pass, std::vector<Scratch>& scratches, Vpls& vpls) {
+  constexpr uint64_t stream = 0x76706c;
+  std::vector<Part> parts = trace_parts(job, stream, pass, scratches);
+  clear(vpls.store);
+  for (std::vector<Splat>& list : vpls.splats) list.clear();
+  for (uint32_t i = 0; i < parts.size(); ++i) {
+    if (vpls.least > 0) select_lights(job, pass, i, parts[i].store);
+    append(vpls.store, parts[i].store);
+    std::vector<Splat>& list = vpls.splats[i * vpls.splats.size() / parts.size()];
+    list.insert(list.end(), parts[i].splats.begin(), parts[i].splats.end());
+  }
+  put_in_order(*job.scene, vpls.store);
+  std::vector<float> near;
+  for (const LightStore::Place& at : vpls.store.places) {
+    const Vertex& v = vpls.store.subpath(at).back();
+    near.push_back(float(inv_pi / std::max(density_of_lights(job, v.p, v.ng, v.guide.wo), 1e-30)));
+  }
+  finish(vpls.store, near);
+}
+
+}  // namespace ajar
