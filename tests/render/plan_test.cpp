@@ -95,6 +95,22 @@ TEST(Plan, WithoutLightsOrTimeThereIsNoPilot) {
   EXPECT_TRUE(hasty.trials.empty());
 }
 
+// Where nothing but a target for the noise ends the render, the pilot is as small as the time to it allows: it grows
+// with the target's demands and never takes the image for its size.
+TEST(Plan, NoiseAloneMakesASmallPilot) {
+  Scene scene = two_rooms(20, 288);
+  const Accel accel(scene);
+  RenderOptions options;
+  options.spp = 0, options.noise = 0.1;
+  const Plan loose = make_plan(scene, accel, options, {});
+  ASSERT_EQ(loose.trials.size(), 4u);
+  EXPECT_LT(loose.width * loose.height, scene.camera.width * scene.camera.height / 8);
+  options.noise = 0.005;
+  const Plan strict = make_plan(scene, accel, options, {});
+  EXPECT_GT(strict.width, loose.width);
+  EXPECT_LT(strict.width, scene.camera.width);
+}
+
 TEST(Plan, StopsWhenAsked) {
   Scene scene = cornell(128);
   const Accel accel(scene);
