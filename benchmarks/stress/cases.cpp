@@ -297,7 +297,7 @@ void add_lights(List& l) {
   }
   Case& both = l.add("1e-8 beside 1e8", [] { return beside(1e8f); });
   both.twin = [] { return beside(0); };
-  both.light = false;  // it begins at lamps as they have power: once in 1e16 at the faint one
+  both.light = false;                    // it begins at lamps as they have power: once in 1e16 at the faint one
   both.blind = {"photon", "plain-vpl"};  // so do these
   l.group = "lights";
   l.add("1", [] { return many_lights(1, 1, size); });

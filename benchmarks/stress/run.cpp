@@ -115,7 +115,8 @@ Verdict judge(const Case& c, const std::string& integrator, const Outcome& out, 
   const kit::ZTest z = kit::z_test(image, right, level, 3, slack);
   const double n = double(image.mean.size());
   const double p = c.tails ? z.p_mean : z.p;
-  return {p >= level, p, fmt::format("mean {:.6g} for {:.6g}; {}", sum(image.mean) / n, sum(right.mean) / n, z.message)};
+  return {p >= level, p,
+          fmt::format("mean {:.6g} for {:.6g}; {}", sum(image.mean) / n, sum(right.mean) / n, z.message)};
 }
 
 }  // namespace ajar::stress

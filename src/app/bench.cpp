@@ -81,7 +81,8 @@ bool is_stress(const std::string& suite) {
     argv.push_back(nullptr);
     execv(program.c_str(), argv.data());
   }
-  throw Error(fmt::format("{}: needs bench_stress beside ajar; build it, with -DBUILD_TESTING=ON (docs/stress.md)", a.suite));
+  throw Error(
+      fmt::format("{}: needs bench_stress beside ajar; build it, with -DBUILD_TESTING=ON (docs/stress.md)", a.suite));
 }
 
 void run_bench_command(const Arguments& a) {

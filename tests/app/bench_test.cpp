@@ -67,7 +67,8 @@ TEST_F(BenchCommand, StressSuiteNamesTheProgramThatItNeeds) {
       run(arguments);
       ADD_FAILURE() << "was not refused";
     } catch (const Error& e) {
-      EXPECT_NE(std::string(e.what()).find(more.empty() ? "build it" : "leave them out"), std::string::npos) << e.what();
+      EXPECT_NE(std::string(e.what()).find(more.empty() ? "build it" : "leave them out"), std::string::npos)
+          << e.what();
     }
   }
   EXPECT_FALSE(fs::exists(out));

@@ -10,7 +10,7 @@
 namespace ajar::kit {
 namespace {
 
-constexpr int reach = 2;           // neighbourhood: 5 x 5 blocks
+constexpr int reach = 2;  // neighbourhood: 5 x 5 blocks
 
 // A number with its noise. squares is variance^2 / degrees of freedom, for Satterthwaite's formula.
 struct Noisy {
