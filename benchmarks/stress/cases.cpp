@@ -323,7 +323,7 @@ void add_materials(List& l) {
         std::pair(MaterialKind::roughplastic, "rough plastic")}) {
     l.group = what;
     for (const double a : {0.3, 1.0, 0.1, 0.01, 1e-3, 1e-4}) {
-      Case& c = l.add("roughness " + shown(a), [kind, a] { return with_material(kind, float(a), size); });
+      Case& c = l.add("roughness " + shown(a), [kind = kind, a] { return with_material(kind, float(a), size); });
       c.light = a >= 0.1;
       if (!c.light) c.blind = {"photon"};  // a photon in 1/alpha^2 comes from within the lobe
     }
@@ -342,8 +342,11 @@ void add_materials(List& l) {
   l.group = "surfaces";
   l.add("grey", plain_room);
   l.add("black", black_room);
-  for (const double h : {1e-2, 1e-4, 1e-6})  // what lies so close to the lens, no path from a lamp will meet
-    l.add("seen from " + shown(h) + " above", [h] { return grazing(float(h), 0); }).light = h > 1e-3;
+  for (const double h : {1e-2, 1e-4, 1e-6}) {
+    Case& c = l.add("seen from " + shown(h) + " above", [h] { return grazing(float(h), 0); });
+    c.light = h > 1e-3;                  // what lies so close to the lens, no path from a lamp will meet
+    if (!c.light) c.blind = {"photon"};  // radii are as large as pixels look: here they vanish
+  }
   for (const double b : {0.08, 1.0})
     l.add("bumps of " + shown(b) + " from 0.01 above", [b] { return grazing(1e-2f, float(b)); });
 }

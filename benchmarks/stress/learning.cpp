@@ -138,8 +138,11 @@ void add_rates(std::vector<Case>& all) {
   add("one record is trusted", [](LearnOptions& o) { o.trust = 1e-6f; });
   all.back().tails = true, all.back().passes = 32;
   add("nothing is trusted", [](LearnOptions& o) { o.trust = 1e30f; });
-  add("mix 0.9999", [](LearnOptions& o) { o.mix = 0.9999f, o.trust = 1e-6f; });
-  all.back().tails = true, all.back().passes = 32;
+  for (const float mix : {0.99f, 0.9999f}) {
+    add(fmt::format("mix {:g}", mix), [mix](LearnOptions& o) { o.mix = mix, o.trust = 1e-6f; });
+    all.back().tails = true, all.back().passes = 32;
+    all.back().limit = mix > 0.999f;
+  }
   add("max rule", [](LearnOptions& o) { o.rule = Rule::max; });
   add("returns", [](LearnOptions& o) { o.rule = Rule::returned; });
 }
