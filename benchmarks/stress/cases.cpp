@@ -297,7 +297,8 @@ void add_lights(List& l) {
   }
   Case& both = l.add("1e-8 beside 1e8", [] { return beside(1e8f); });
   both.twin = [] { return beside(0); };
-  both.light = false;  // it begins at lamps as they have power: once in 1e16 at the faint one
+  both.light = false;                    // it begins at lamps as they have power: once in 1e16 at the faint one
+  both.blind = {"photon", "plain-vpl"};  // so do these
   l.group = "lights";
   l.add("1", [] { return many_lights(1, 1, size); });
   for (const int n : {100, 100000}) l.add(fmt::format("{}", n), [n] { return many_lights(n, 1, size); });
@@ -307,7 +308,8 @@ void add_lights(List& l) {
     l.add("ball of radius " + shown(r), [r] { return spark(float(r)); }).twin = [] { return spark(0); };
   l.group = "film";
   l.add("24 x 24", plain);
-  l.add("1 x 1", [] { return film(1, 1); }).passes = 1000;
+  Case& dot = l.add("1 x 1", [] { return film(1, 1); });
+  dot.passes = 1000, dot.blind = {"photon"};  // merges with one light subpath
   for (const bool wide : {true, false}) {
     Case& c = l.add(wide ? "4096 x 1" : "1 x 4096", [wide] { return wide ? film(4096, 1) : film(1, 4096); });
     c.passes = 2;
@@ -321,8 +323,9 @@ void add_materials(List& l) {
         std::pair(MaterialKind::roughplastic, "rough plastic")}) {
     l.group = what;
     for (const double a : {0.3, 1.0, 0.1, 0.01, 1e-3, 1e-4}) {
-      Case& c = l.add("roughness " + shown(a), [kind, a] { return with_material(kind, float(a), size); });
+      Case& c = l.add("roughness " + shown(a), [kind = kind, a] { return with_material(kind, float(a), size); });
       c.light = a >= 0.1;
+      if (!c.light) c.blind = {"photon"};  // a photon in 1/alpha^2 comes from within the lobe
     }
   }
   l.group = "glass in a white sky";
@@ -339,8 +342,11 @@ void add_materials(List& l) {
   l.group = "surfaces";
   l.add("grey", plain_room);
   l.add("black", black_room);
-  for (const double h : {1e-2, 1e-4, 1e-6})  // what lies so close to the lens, no path from a lamp will meet
-    l.add("seen from " + shown(h) + " above", [h] { return grazing(float(h), 0); }).light = h > 1e-3;
+  for (const double h : {1e-2, 1e-4, 1e-6}) {
+    Case& c = l.add("seen from " + shown(h) + " above", [h] { return grazing(float(h), 0); });
+    c.light = h > 1e-3;                  // what lies so close to the lens, no path from a lamp will meet
+    if (!c.light) c.blind = {"photon"};  // radii are as large as pixels look: here they vanish
+  }
   for (const double b : {0.08, 1.0})
     l.add("bumps of " + shown(b) + " from 0.01 above", [b] { return grazing(1e-2f, float(b)); });
 }

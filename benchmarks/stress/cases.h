@@ -23,8 +23,10 @@ struct Case {
   std::function<Scene()> twin = nullptr;
   double factor = 1;
   std::string judge = "path";
-  bool path = true;      ///< rays that run into lights, and next-event estimation, can find all its light
-  bool light = true;     ///< paths from the lights, joined to the lens, can find all its light
+  bool path = true;   ///< rays that run into lights, and next-event estimation, can find all its light
+  bool light = true;  ///< paths from the lights, joined to the lens, can find all its light
+  std::vector<std::string> blind = {};  ///< further integrators that cannot find all its light (docs/limits.md)
+  bool tails = false;    ///< noise has so long tails that small parts of the image look quiet: its mean alone is judged
   bool limit = false;    ///< it may be wrong, and docs/limits.md says why
   bool refused = false;  ///< make is to throw an Error
   int max_depth = -1;

@@ -136,8 +136,13 @@ void add_rates(std::vector<Case>& all) {
   add("older evidence forgotten", [](LearnOptions& o) { o.forget = 0; });
   add("older evidence kept", [](LearnOptions& o) { o.forget = 1; });
   add("one record is trusted", [](LearnOptions& o) { o.trust = 1e-6f; });
+  all.back().tails = true, all.back().passes = 32;
   add("nothing is trusted", [](LearnOptions& o) { o.trust = 1e30f; });
-  add("mix 0.9999", [](LearnOptions& o) { o.mix = 0.9999f, o.trust = 1e-6f; });
+  for (const float mix : {0.99f, 0.9999f}) {
+    add(fmt::format("mix {:g}", mix), [mix](LearnOptions& o) { o.mix = mix, o.trust = 1e-6f; });
+    all.back().tails = true, all.back().passes = 32;
+    all.back().limit = mix > 0.999f;
+  }
   add("max rule", [](LearnOptions& o) { o.rule = Rule::max; });
   add("returns", [](LearnOptions& o) { o.rule = Rule::returned; });
 }
@@ -147,6 +152,7 @@ void add_wrong_fields(std::vector<Case>& all) {
     all.push_back({"wrong fields", std::move(name), usual});
     all.back().judge = "bdpt";
     all.back().fields = std::move(fields);
+    all.back().tails = true, all.back().passes = 32;
     all.back().tune = freeze;
   };
   add("the scene's own", [] { return learned(usual(), 32); });

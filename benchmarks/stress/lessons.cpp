@@ -1,6 +1,7 @@
 #include "lessons.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "ajar/render/render.h"
@@ -23,7 +24,7 @@ Lesson look(const RenderState& state) {
 
 }  // namespace
 
-std::vector<Lesson> lessons(float albedo, Rule rule, uint32_t passes) {
+std::vector<Lesson> lessons(float albedo, const LearnOptions& learn, uint32_t passes) {
   Material wall;
   wall.reflectance = Rgb(albedo);
   const Scene scene = furnace(Oven::box, wall, Rgb(1), 16);
@@ -31,7 +32,7 @@ std::vector<Lesson> lessons(float albedo, Rule rule, uint32_t passes) {
   RenderOptions o;
   o.integrator = "guided-path";
   o.sampler = SamplerKind::independent;
-  o.learn.rule = rule;
+  o.learn = learn;
   o.spp = passes;
   RenderState state = start_render(scene, o);
   std::vector<Lesson> out;
@@ -40,6 +41,13 @@ std::vector<Lesson> lessons(float albedo, Rule rule, uint32_t passes) {
     return true;
   });
   return out;
+}
+
+uint32_t lesson_of_convergence(const std::vector<Lesson>& all, float albedo) {
+  const double share = (1 - std::exp(-1.0)) / (1 - double(albedo));
+  for (const Lesson& l : all)
+    if (l.mean >= share) return l.number;
+  return 0;
 }
 
 }  // namespace ajar::stress

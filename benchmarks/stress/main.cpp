@@ -152,7 +152,7 @@ void add_row(const Arguments& a, Table& table, const Case& c) {
       continue;
     }
     const Trial t = apart(a.limit, [&] { return run(c, integrator, a.batches, a.passes); });
-    const Verdict v = judge(c, t.outcome, right.outcome);
+    const Verdict v = judge(c, integrator, t.outcome, right.outcome);
     table.text += fmt::format(" {} |", cell(table, c, integrator, t, v));
     megabytes = std::max(megabytes, t.megabytes), rejected += t.outcome.rejected;
     fmt::print(stderr, "{}, {}, {}: {:.1f} s, p {:.2g} {}{}{}\n", c.group, c.name, integrator, t.outcome.cpu_seconds,
@@ -170,16 +170,26 @@ bool is_wanted(const Arguments& a, const Case& c) {
   return (a.large || !c.large) && is_in(c.group, a.groups) && is_in(c.name, a.names);
 }
 
-// How what is learned of a closed box approaches its answer, as a share of it; where there is none, as it is.
-int show_lessons(const Arguments& a) {
+void write_or_print(const Arguments& a, const std::string& text) {
+  if (a.out.empty())
+    fmt::print("{}", text);
+  else
+    write_text(a.out, text);
+}
+
+// How what is learned of a closed box approaches its answer while it renders, as a share of it; where there is none,
+// as it is.
+std::string lessons_of_renders() {
   constexpr uint32_t shown[] = {2, 3, 4, 6, 8, 10, 12, 14};
   std::string text = "| rule | albedo | 1/(1−a) |";
   for (const uint32_t n : shown) text += fmt::format(" {} |", n);
   text += " largest cell |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n";
+  LearnOptions learn;
   for (const Rule rule : {Rule::expected, Rule::max, Rule::returned})
     for (const float albedo : {0.5f, 0.9f, 0.99f, 0.999f, 1.0f}) {
+      learn.rule = rule;
       const double answer = albedo < 1 ? 1 / (1 - double(albedo)) : 1;
-      const std::vector<Lesson> all = lessons(albedo, rule, 512);
+      const std::vector<Lesson> all = lessons(albedo, learn, 512);
       text += fmt::format("| {} | {:g} | {} |", rule_names[int(rule)], albedo,
                           albedo < 1 ? fmt::format("{:.0f}", answer) : "∞");
       for (const uint32_t n : shown)
@@ -187,10 +197,33 @@ int show_lessons(const Arguments& a) {
       text += fmt::format(" {:.3g} |\n", all.back().most / answer);
       fmt::print(stderr, "{} {}: {} lessons\n", rule_names[int(rule)], albedo, all.size());
     }
-  if (a.out.empty())
-    fmt::print("{}", text);
-  else
-    write_text(a.out, text);
+  return text;
+}
+
+// Lessons that learning takes when every pass is one, and how far it then goes beyond the answer.
+std::string lessons_to_converge() {
+  std::string text =
+      "| albedo | 1/(1−a) | kept of older evidence | lessons to 1−1/e | times (1−a) | after the last | largest cell |\n"
+      "|--:|--:|--:|--:|--:|--:|--:|\n";
+  for (const float albedo : {0.5f, 0.9f, 0.99f, 0.999f, 1.0f})
+    for (const float forget : {0.0f, 0.5f}) {
+      const double inverse = 1 - double(albedo), most = albedo < 1 ? 6 / inverse : 200;
+      LearnOptions learn;
+      learn.forget = forget, learn.train = 2 * uint32_t(std::clamp(most, 20.0, 2000.0) / 2);
+      const std::vector<Lesson> all = lessons(albedo, learn, 0);
+      const double answer = albedo < 1 ? 1 / inverse : double(all.back().number);
+      const uint32_t n = albedo < 1 ? lesson_of_convergence(all, albedo) : 0;
+      text += fmt::format("| {:g} | {} | {:g} | {} | {} | {:.3f} ({}) | {:.3f} |\n", albedo,
+                          albedo < 1 ? fmt::format("{:.0f}", answer) : "∞", forget, n > 0 ? fmt::format("{}", n) : "–",
+                          n > 0 ? fmt::format("{:.2f}", n * inverse) : "–", all.back().mean / answer, all.back().number,
+                          all.back().most / answer);
+      fmt::print(stderr, "albedo {} kept {}: {} lessons\n", albedo, forget, all.size());
+    }
+  return text;
+}
+
+int show_lessons(const Arguments& a) {
+  write_or_print(a, lessons_to_converge() + "\n" + lessons_of_renders());
   return 0;
 }
 

@@ -32,6 +32,8 @@ struct Verdict {
   double p = 1;         ///< that noise alone makes such a difference
   std::string message;  ///< what is wrong
 };
-Verdict judge(const Case& c, const Outcome& outcome, const Outcome& reference);
+/// Merging is biased by what its radius blurs: it is allowed a deviation of a fiftieth of the brightness in every
+/// block, besides noise, so that a tenth is too much.
+Verdict judge(const Case& c, const std::string& integrator, const Outcome& outcome, const Outcome& reference);
 
 }  // namespace ajar::stress

@@ -6,9 +6,13 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "ajar/core/error.h"
+#include "ajar/film/picture.h"
 #include "ajar/render/render.h"
 #include "ajar/report/bench.h"
 #include "ajar/report/page.h"
@@ -19,6 +23,8 @@
 
 namespace ajar {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct Arguments {
   std::string suite, out, references;
@@ -53,7 +59,34 @@ std::string command_of(const Arguments& a) {
   return command;
 }
 
+// The stress suite's cases are scenes that code builds; the program that has them is built with the tests.
+bool is_stress(const std::string& suite) {
+  const nlohmann::json json = nlohmann::json::parse(std::ifstream(suite), nullptr, false);
+  return json.is_object() && json.value("cases", nlohmann::json()) == "stress";
+}
+
+// Becomes that program, which stands beside this one or where the build puts it.
+[[noreturn]] void run_stress(const Arguments& a) {
+  if (!a.references.empty() || a.threads > 0)
+    throw Error(fmt::format("{}: the stress suite takes neither --references nor --threads; leave them out", a.suite));
+  const fs::path folder = fs::read_symlink("/proc/self/exe").parent_path(), out = fs::path(a.out) / "stress.md";
+  for (const char* place : {"bench_stress", "benchmarks/stress/bench_stress"}) {
+    const std::string program = (folder / place).string();
+    if (access(program.c_str(), X_OK) != 0) continue;
+    make_folder(a.out);
+    std::vector<std::string> words = {program, "-o", out.string(), "--pictures", (fs::path(a.out) / "wrong").string()};
+    if (a.quick) words.insert(words.end(), {"--batches", "8"});
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    execv(program.c_str(), argv.data());
+  }
+  throw Error(
+      fmt::format("{}: needs bench_stress beside ajar; build it, with -DBUILD_TESTING=ON (docs/stress.md)", a.suite));
+}
+
 void run_bench_command(const Arguments& a) {
+  if (is_stress(a.suite)) run_stress(a);
   const Suite suite = load_suite(a.suite, a.quick);
   for (const BenchScene& scene : suite.scenes)
     if (!scene.missing.empty() && !a.quiet)

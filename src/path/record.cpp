@@ -11,11 +11,20 @@ struct End {
   double own = 0, other = 0;  // vertices per area of the tracing and of the other side
 };
 
+// What a vertex passes on from the vertices after it by delta events: the one sample that the path is.
+struct Passed {
+  float q = 0, w = 0;
+};
+
+// Only reflects or refracts sharply: the fields know nothing of it.
+bool passes(const Guide& guide) { return guide.bsdf.has_delta && !guide.bsdf.has_smooth; }
+
 // Blank where the vertex scatters nothing that the fields could know.
-End end_of(const Fields& fields, const Vertex& v, const Vec3& d, Side side) {
+End end_of(const Fields& fields, const Vertex& v, const Vec3& d, Side side, const Passed& passed = {}) {
   End e;
   e.cosine = std::abs(glm::dot(v.ng, d));
   e.q = v.shines;
+  if (passes(v.guide)) e.q += passed.q, e.w = passed.w;
   if (v.guide.cell == none || !connectable(v.guide)) return e;
   e.cell = v.guide.cell;
   const float share = scatters(v.guide);
@@ -31,11 +40,12 @@ End end_of(const Fields& fields, const Vertex& v, const Vec3& d, Side side) {
 // cosine lobe from every vertex here.
 float weight_at(const End& e, double density) { return float(std::max(e.own + e.other, 1e-30) * inv_pi / density); }
 
-void record_segment(const Fields& fields, Training& training, const Vertex& a, const Vertex& b, Side side) {
+void record_segment(const Fields& fields, Training& training, const Vertex& a, const Vertex& b, Side side,
+                    const Passed& passed) {
   const Vec3 d = -b.guide.wo;
-  End from = end_of(fields, a, d, side), to = end_of(fields, b, d, side);
+  End from = end_of(fields, a, d, side), to = end_of(fields, b, d, side, passed);
   if (from.cell == none || !(from.cosine > 1e-4f) || !(to.cosine > 1e-4f)) return;
-  if (to.cell == none && !(to.q > 0)) return;
+  if (to.cell == none && !passes(b.guide) && !(to.q > 0)) return;
   const double pdf = b.own * b.distance2 / to.cosine;
   const double back = (1 - b.guide.mix_other) * to.cosine * inv_pi + b.guide.mix_other * b.guide.back;
   if (from.own + from.other <= 0) from.own = 1;
@@ -79,6 +89,17 @@ void record_emission(const Fields& fields, Training& training, Sightings& sighti
          {lamp.p, d, std::sqrt(first.distance2), value, float(cosine * inv_pi / pdf)});
 }
 
+// What vertex i would pass on to the one before it.
+Passed passed_by(const Fields& fields, const Subpath& subpath, int i, Side side, const Passed& next) {
+  if (i + 1 >= subpath.n || !passes(subpath[i].guide)) return {};
+  const float here = luminance(subpath[i].beta);
+  if (!(here > 0)) return {};
+  const Vertex& after = subpath[i + 1];
+  const End e = end_of(fields, after, after.guide.wo, side, next);
+  const float share = luminance(after.beta) / here;
+  return {share * e.q, share * e.w};
+}
+
 // What a vertex scatters back along the path, by what the path itself went on to find; next is the same of the vertex
 // after it.
 float brought_by(const Subpath& subpath, int i, float next) {
@@ -95,9 +116,11 @@ float brought_by(const Subpath& subpath, int i, float next) {
 void record_subpath(const Fields& fields, Training& training, Sightings& sightings, const Subpath& subpath, Side side) {
   Tallies& own_tallies = training.of(side);
   float brought = 0;
+  Passed passed;
   for (int i = subpath.n - 1; i >= 1; --i) {
     const Vertex& b = subpath[i];
     if (fields.rule == Rule::returned) brought = brought_by(subpath, i, brought);
+    passed = passed_by(fields, subpath, i, side, passed);
     if (connectable(b.guide)) {
       if (b.guide.missing) record_missing(sightings, b.guide.missing, glm::dot(b.ng, b.guide.wo) < 0 ? -b.ng : b.ng);
       if (b.guide.cell != none) record_visit(own_tallies, b.guide.cell);
@@ -107,7 +130,7 @@ void record_subpath(const Fields& fields, Training& training, Sightings& sightin
     if (fields.rule == Rule::returned)
       record_return(fields, training, a, b, side, brought);
     else
-      record_segment(fields, training, a, b, side);
+      record_segment(fields, training, a, b, side, passed);
   }
   if (side == Side::light && subpath.n > 1)
     record_emission(fields, training, sightings, subpath[0], subpath[1], brought);

@@ -58,6 +58,22 @@ struct BenchCommand : testing::Test {
   nlohmann::json results() const { return nlohmann::json::parse(std::ifstream(out + "/results.json")); }
 };
 
+// The suite that code builds: another program's, which does not stand beside this one.
+TEST_F(BenchCommand, StressSuiteNamesTheProgramThatItNeeds) {
+  for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--threads", "2"}}) {
+    std::vector<std::string> arguments = {kit::source_path("benchmarks/stress.json"), "-o", out};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    try {
+      run(arguments);
+      ADD_FAILURE() << "was not refused";
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find(more.empty() ? "build it" : "leave them out"), std::string::npos)
+          << e.what();
+    }
+  }
+  EXPECT_FALSE(fs::exists(out));
+}
+
 TEST_F(BenchCommand, WritesResultsAndPrintsATable) {
   const std::string table = run({suite, "-o", out, "--threads", "1"});
   EXPECT_NE(table.find("baseline"), std::string::npos);

@@ -10,8 +10,7 @@
 namespace ajar::kit {
 namespace {
 
-constexpr double rounding = 1e-4;  // relative difference that is no difference
-constexpr int reach = 2;           // neighbourhood: 5 x 5 blocks
+constexpr int reach = 2;  // neighbourhood: 5 x 5 blocks
 
 // A number with its noise. squares is variance^2 / degrees of freedom, for Satterthwaite's formula.
 struct Noisy {
@@ -114,10 +113,10 @@ double normal_of_student(double t, double nu) {
 }
 
 // A difference against its noise; equal numbers agree however sure they are.
-double deviate(const Pair& p, double variance, double nu) {
-  const double difference = p.a.value - p.b.value, slack = rounding * p.brightness();
+double deviate(const Pair& p, double variance, double nu, double slack) {
+  const double difference = p.a.value - p.b.value, allowed = slack * p.brightness();
   if (difference == 0) return 0;
-  return normal_of_student(difference / std::sqrt(variance + slack * slack), std::max(nu, 1.0));
+  return normal_of_student(difference / std::sqrt(variance + allowed * allowed), std::max(nu, 1.0));
 }
 
 double two_sided(double z) { return std::erfc(std::abs(z) / std::sqrt(2.0)); }
@@ -141,7 +140,7 @@ struct Verdict {
   double chi = 0, lean = 0;
 };
 
-Verdict test_channel(const Estimate& ea, const Estimate& eb, const Grid& grid, int channel, ZTest& out) {
+Verdict test_channel(const Estimate& ea, const Estimate& eb, const Grid& grid, int channel, double slack, ZTest& out) {
   const Pooled a = pool(ea, grid, channel), b = pool(eb, grid, channel);
   std::vector<Pair> pairs(grid.size());
   double brightness = 0;
@@ -158,14 +157,14 @@ Verdict test_channel(const Estimate& ea, const Estimate& eb, const Grid& grid, i
       const Around n = around(pairs, grid, x, y);
       relative.push_back(1 / (n.mean.brightness() + 1e-2 * brightness + 1e-300));
       const double usual = n.brightness2 > 0 ? n.mean.variance() / n.brightness2 * p.brightness() * p.brightness() : 0;
-      const double z = deviate(p, std::max(p.variance(), usual), usual > p.variance() ? n.mean.dof() : p.dof());
+      const double z = deviate(p, std::max(p.variance(), usual), usual > p.variance() ? n.mean.dof() : p.dof(), slack);
       r.chi += z * z;
       if (std::abs(z) <= std::abs(out.worst_z)) continue;
       out.worst_z = z, out.worst_x = x * grid.block, out.worst_y = y * grid.block, out.worst_channel = channel;
     }
   for (const auto& weights : {plain, relative}) {
     const Pair sum{total(a, weights), total(b, weights)};
-    const double z = deviate(sum, sum.variance(), sum.dof());
+    const double z = deviate(sum, sum.variance(), sum.dof(), slack);
     if (std::abs(z) > std::abs(r.lean)) r.lean = z;
   }
   return r;
@@ -186,7 +185,7 @@ Estimate estimate(int width, int height, std::vector<std::vector<double>> runs) 
   return e;
 }
 
-ZTest z_test(const Estimate& a, const Estimate& b, double level, int block) {
+ZTest z_test(const Estimate& a, const Estimate& b, double level, int block, double slack) {
   ZTest r;
   if (!valid(a) || !valid(b) || a.width != b.width || a.height != b.height) {
     r.p = r.p_max = r.p_chi = r.p_mean = 0;
@@ -196,7 +195,7 @@ ZTest z_test(const Estimate& a, const Estimate& b, double level, int block) {
   const Grid grid{(a.width + block - 1) / block, (a.height + block - 1) / block, block};
   double lean = 0;
   for (int channel = 0; channel < 3; ++channel) {
-    const Verdict v = test_channel(a, b, grid, channel, r);
+    const Verdict v = test_channel(a, b, grid, channel, slack, r);
     r.p_chi = std::min(r.p_chi, chi_square_tail(v.chi, double(grid.size())));
     if (std::abs(v.lean) > std::abs(lean)) lean = v.lean;
   }

@@ -36,8 +36,8 @@ struct ZTest {
 /// (chi-square), do all lean to one side (z of the mean, plain and relative to the brightness around). Built for
 /// long-tailed noise: a z counts by Student's distribution with the degrees of freedom that its variance really has,
 /// and no block is believed to be much quieter, relative to its brightness, than its neighbourhood (it may only have
-/// missed the rare sample). Differences below 1e-4 of the brightness are taken for rounding. Non-finite values and
-/// unequal sizes fail.
-ZTest z_test(const Estimate& a, const Estimate& b, double level = 1e-4, int block = 4);
+/// missed the rare sample). slack: a deviation, relative to the brightness, that is expected besides noise: rounding,
+/// or the bias that one of them may have. Non-finite values and unequal sizes fail.
+ZTest z_test(const Estimate& a, const Estimate& b, double level = 1e-4, int block = 4, double slack = 1e-4);
 
 }  // namespace ajar::kit

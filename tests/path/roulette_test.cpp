@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ajar/path/walk.h"
+#include "ajar/scene/build.h"
 
 namespace ajar {
 namespace {
@@ -48,6 +49,30 @@ TEST(Roulette, WhatLosesNothingEndsAllTheSame) {
   for (int n = 0; n < 512; ++n) edges += after(n, 1).chance;
   EXPECT_LT(edges, 100);
   EXPECT_LT(after(1000, 1).chance, 0.011);
+}
+
+// Fields that expect a millionth of what was promised, wherever the path comes: it lives on with few others, but does
+// not weigh more than the window allows.
+TEST(Roulette, FieldsThatLieDoNotMakeFireflies) {
+  const Scene scene = cornell(8);
+  const Accel accel(scene);
+  Hit hit;
+  ASSERT_TRUE(accel.intersect({0, 0, 3}, {0, 0, -1}, 0, infinity, hit));
+  Fields fields;
+  fields.q.cells.push_back({0, 0, 1e-6f, 0.8f, 1});
+  Guide guide;
+  make_guide(scene, nullptr, Side::camera, make_surface(scene, hit, {0, 0, 3}, {0, 0, -1}), {0, 0, 1}, guide);
+  guide.fields = &fields, guide.cell = 0;
+  WalkOptions options;
+  options.fields = &fields;
+  float weight = 1, chance = 1, promised = 1;
+  for (int n = 2; n < 12; ++n) {
+    const float q = keep(options, guide, n, Rgb(weight), Rgb(weight), promised);
+    weight /= q, chance *= q;
+    EXPECT_LE(weight, options.window * 1.001f) << n;
+  }
+  EXPECT_NEAR(weight * chance, 1, 1e-5);
+  EXPECT_LT(chance, 0.21);
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 
 #include "ajar/core/error.h"
 #include "ajar/scene/build.h"
+#include "ajar/scene/load.h"
+#include "kit/files.h"
 
 namespace ajar {
 namespace {
@@ -81,6 +83,15 @@ TEST(Plan, DoesNotTakeWhatSeesNothing) {
   EXPECT_NE(plan.integrator, "guided-path");
 }
 
+// A caustic lies on other light: what misses it sees the most of every pixel, and looks quiet.
+TEST(Plan, KnowsThatCausticsAreMissed) {
+  Scene scene = load_scene(kit::source_path("scenes/glass/glass.xml"));
+  set_size(scene.camera, 128, 128);
+  int right = 0;
+  for (const uint64_t seed : {1, 2, 3, 4, 5, 6}) right += is_on(plan_for(scene, 20, seed), "light-subpaths");
+  EXPECT_GE(right, 5);  // was one in five, while only what halves a block counted as missed
+}
+
 TEST(Plan, WithoutLightsOrTimeThereIsNoPilot) {
   Scene unlit = cornell(32);
   for (Shape& s : unlit.shapes) s.light = none;
@@ -93,6 +104,24 @@ TEST(Plan, WithoutLightsOrTimeThereIsNoPilot) {
   const Plan hasty = plan_for(cornell(256), 0.5);
   EXPECT_EQ(hasty.integrator, "bdpt");
   EXPECT_TRUE(hasty.trials.empty());
+}
+
+// Where nothing but a target for the noise ends the render, a first small pilot tells how long that takes, and what
+// takes longer gets a pilot of its share, not one of the image's size.
+TEST(Plan, NoiseAloneMakesASmallPilot) {
+  Scene scene = two_rooms(20, 288);
+  const Accel accel(scene);
+  const double pixels = double(scene.camera.width) * scene.camera.height;
+  RenderOptions options;
+  options.spp = 0, options.noise = 1e6;
+  const Plan loose = make_plan(scene, accel, options, {});
+  ASSERT_EQ(loose.trials.size(), 4u);
+  EXPECT_LT(loose.width * loose.height, 4000);
+  double price = infinity;
+  for (const Trial& t : loose.trials) price = std::min(price, t.price());
+  options.noise = price * 1e-6 * pixels / 50;  // what takes 50 s
+  const Plan strict = make_plan(scene, accel, options, {});
+  EXPECT_NEAR(double(strict.width) * strict.height / (double(loose.width) * loose.height), 2.5, 0.1);
 }
 
 TEST(Plan, StopsWhenAsked) {

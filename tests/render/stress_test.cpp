@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 #include "ajar/scene/build.h"
 #include "lessons.h"
@@ -10,6 +11,15 @@
 
 namespace ajar::stress {
 namespace {
+
+// Sanitizers ask whether a case is borne at all, and take their time: two renders, and no verdict on what is noise.
+#ifdef AJAR_SANITIZED
+constexpr bool judged = false;
+constexpr int batches = 2;
+#else
+constexpr bool judged = true;
+constexpr int batches = 16;
+#endif
 
 std::string label(const Case& c) {
   std::string text = c.group + "_" + c.name;
@@ -43,7 +53,10 @@ std::vector<Case> quick() {
                                    "seen from 1e-06 above",
                                    "no room for a cell",
                                    "one cell",
-                                   "older evidence forgotten"};
+                                   "older evidence forgotten",
+                                   "of another scene",
+                                   "upside down",
+                                   "lying by 1e6"};
   std::vector<Case> chosen;
   for (Case& c : cases())
     if (c.refused || std::find(std::begin(names), std::end(names), c.name) != std::end(names)) {
@@ -53,26 +66,16 @@ std::vector<Case> quick() {
   return chosen;
 }
 
-// Merging blurs, and virtual point lights have long tails in extreme cases (docs/limits.md): these are held to finite
-// values alone.
-bool is_held_to_the_mean(const std::string& integrator) {
-  return !is_merging(integrator) && !integrator.ends_with("vpl");
-}
-
 class Stress : public testing::TestWithParam<Case> {};
 
-// Finite, not rejected, and, where that can be asked for, what it ought to be up to noise.
+// Finite, not rejected, and what it ought to be up to noise; with merging, up to a small bias too.
 TEST_P(Stress, IsBorne) {
   const Case& c = GetParam();
-  const Outcome right = reference(c, 16);
+  const Outcome right = judged ? reference(c, batches) : Outcome{};
   for (const std::string& integrator : integrator_names()) {
-    if (!can_find(c, integrator)) continue;
-    if (!is_held_to_the_mean(integrator)) {
-      const Outcome o = run(c, integrator, 2);
-      EXPECT_EQ(o.rejected, 0u) << integrator << ": " << o.replay;
-      continue;
-    }
-    const Verdict v = judge(c, run(c, integrator, 16), right);
+    if (!can_find(c, integrator) || (c.fields && !is_guided(integrator))) continue;
+    const double passes = integrator.ends_with("vpl") && c.passes > 8 ? 0.25 : 1;  // 256 light subpaths each
+    const Verdict v = judge(c, integrator, run(c, integrator, batches, passes), right);
     EXPECT_TRUE(v.ok) << integrator << ": " << v.message;
   }
 }
@@ -84,7 +87,7 @@ TEST(Lessons, ApproachTheAnswerFromBelow) {
   for (const float albedo : {0.5f, 0.9f}) {
     const double answer = 1 / (1 - double(albedo));
     double before = 0;
-    const std::vector<Lesson> all = lessons(albedo, Rule::expected, 128);
+    const std::vector<Lesson> all = lessons(albedo, {}, 128);
     ASSERT_GE(all.size(), 10u);
     for (const Lesson& l : all) {
       EXPECT_LT(l.mean, answer * 1.02) << albedo << " after lesson " << l.number;
@@ -98,7 +101,58 @@ TEST(Lessons, ApproachTheAnswerFromBelow) {
 
 // Where the answer is infinite, every lesson adds what one more bounce brings, and no more.
 TEST(Lessons, GrowByABounceWithoutLoss) {
-  for (const Lesson& l : lessons(1, Rule::expected, 16)) EXPECT_LT(l.mean, 1.05 * l.number) << l.number;
+  for (const Lesson& l : lessons(1, {}, 16)) EXPECT_LT(l.mean, 1.05 * l.number) << l.number;
+}
+
+// A fixed-point iteration that contracts with the albedo has 1 - 1/e of its answer after -1/ln(a) lessons, where each
+// is of all paths and keeps no older evidence. Strata that no path of a lesson met wait for the next: a few times as
+// many.
+TEST(Lessons, ComeAsFastAsTheAlbedoAllows) {
+  LearnOptions learn;
+  learn.train = 40, learn.forget = 0;
+  const double expected = -1 / std::log(0.9);
+  const uint32_t n = lesson_of_convergence(lessons(0.9f, learn, 0), 0.9f);
+  EXPECT_GT(n, 0.8 * expected);
+  EXPECT_LT(n, 4 * expected);
+}
+
+// What mirrors and glass pass on is light that Q knows: behind a mirror, what the fields expect at the screen is what
+// the image shows.
+TEST(Lessons, KnowWhatAMirrorPassesOn) {
+  const Scene scene = mirror_chain(1);
+  const Accel accel(scene);
+  const auto rendered = [&](const char* integrator, uint32_t passes, uint32_t train) {
+    RenderOptions o;
+    o.integrator = integrator, o.sampler = SamplerKind::independent, o.spp = passes;
+    o.learn.train = train, o.learn.forget = 1;
+    RenderState state = start_render(scene, o);
+    render(scene, accel, o, state, nullptr);
+    return state;
+  };
+  const Fields fields = rendered("guided-path", 0, 128).learning.fields;
+  double expected = 0, seen = 0;
+  WalkOptions options;
+  options.fields = &fields;
+  constexpr int n = 4000;
+  for (int i = 0; i < n; ++i) {
+    Sampler sampler = make_sampler(SamplerKind::independent, 9, Side::camera, uint64_t(i), 0);
+    Subpath path;
+    Walk walk;
+    Surface surface;
+    start_camera(scene, options, sampler.next2() * 24.0f, Vec2(0.5f), path, walk);
+    while (step(scene, accel, options, path, walk, surface))
+      if (connectable(path[path.n - 1].guide)) {
+        expected += promise(path[path.n - 1].guide, path[path.n - 1].beta).all / n;
+        break;
+      } else if (!scatter(options, sampler, path, walk)) {
+        break;
+      }
+  }
+  const Picture image = develop(rendered("path", 256, 0).film);
+  for (size_t i = 0; i < image.pixels.size(); i += 3)
+    seen += luminance(Rgb(image.pixels[i], image.pixels[i + 1], image.pixels[i + 2])) / (24.0 * 24);
+  EXPECT_GT(expected / seen, 0.95);  // 0.85 is what next-event estimation and hits find without the mirror
+  EXPECT_LT(expected / seen, 1.25);
 }
 
 // What 100 000 passes of one value sum up to: in single precision it would be off in the third digit.

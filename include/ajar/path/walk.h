@@ -90,15 +90,17 @@ inline bool choose_light_point(const Scene& scene, const Guide& guide, const Vec
 inline float surest(int vertices) { return std::max(0.95f, 1 - 1 / float(vertices)); }  // (R4)
 
 /// Probability that a subpath of so many vertices goes on. Where the field knows what is still to be expected of it,
-/// that decides, against what was expected at its start (promised: set here the first time that it is known); elsewhere
-/// its throughput.
+/// that decides, against what was expected at its start (promised: set here the first time that it is known), but it
+/// does not raise the throughput to more than the window's times that of the start: what the field knows nothing of, or
+/// lies about, would come back as rare and bright samples. Elsewhere the throughput decides.
 inline float keep(const WalkOptions& options, const Guide& guide, int vertices, const Rgb& beta, const Rgb& survival,
                   float& promised) {
   if (options.fields) {
     const Promise p = promise(guide, beta);
     if (!(promised > 0)) promised = p.all;
     const float most = vertices > options.sure_vertices ? surest(vertices) : 1;
-    if (p.beyond > 0 && promised > 0) return std::clamp(options.window * p.beyond / promised, 0.05f, most);  // (G6)
+    const float least = std::clamp(max_component(survival) / options.window, 0.05f, most);
+    if (p.beyond > 0 && promised > 0) return std::clamp(options.window * p.beyond / promised, least, most);  // (G6)
   }
   return vertices > options.roulette_from ? std::min(max_component(survival), surest(vertices)) : 1;
 }
