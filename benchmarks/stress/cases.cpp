@@ -321,7 +321,7 @@ void add_materials(List& l) {
         std::pair(MaterialKind::roughplastic, "rough plastic")}) {
     l.group = what;
     for (const double a : {0.3, 1.0, 0.1, 0.01, 1e-3, 1e-4}) {
-      Case& c = l.add("roughness " + shown(a), [kind, a] { return with_material(kind, float(a), size); });
+      Case& c = l.add("roughness " + shown(a), [m = kind, a] { return with_material(m, float(a), size); });
       c.light = a >= 0.1;
     }
   }
