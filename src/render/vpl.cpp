@@ -59,6 +59,19 @@ double share_of_joins(const Job& job, const Vec3& y, const Vec3& ng, const Vec3&
   return lights > 0 ? lights / (lights + walked) : 0;  // (I1)
 }
 
+// Whether no walk finds what a light subpath brings its last vertex: a caustic of a light without extent.
+bool only_joined(std::span<const Vertex> light) {
+  const size_t end = light.size() - 1;
+  const LightPoint& point = light[0].point;
+  return end > 1 && (point.delta_position || point.delta_direction) &&
+         std::all_of(light.begin() + 1, light.begin() + ptrdiff_t(end), [](const Vertex& v) { return v.delta; });
+}
+
+double share_at(const Job& job, std::span<const Vertex> light, const Vec3& x, double walked) {
+  const Vertex& y = light.back();
+  return only_joined(light) ? 1 : share_of_joins(job, y.p, y.ng, x - y.p, walked);
+}
+
 // Whether the walk is to find what its last vertex y scatters, which joins at the one before could have found as well.
 // What passes y by a delta event they could not.
 bool is_walked(Work& work) {
@@ -102,8 +115,7 @@ void join_vpls(Work& work) {
     const LightStore::Place& at = *choice.place;
     Candidate c;
     if (join_vertices(store.subpath(at), at.share, camera.first(camera.n), 0, c) && is_free(work, c, at.s, camera.n)) {
-      const Vertex& y = store.subpath(at).back();
-      const double share = share_of_joins(job, y.p, y.ng, camera[camera.n - 1].p - y.p, c.light.other);
+      const double share = share_at(job, store.subpath(at), camera[camera.n - 1].p, c.light.other);
       c.value *= choice.weight;
       add(work, c, float(share) * share_of_camera(work, c), at.s, camera.n);
     }
