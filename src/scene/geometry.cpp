@@ -26,25 +26,20 @@ float map_magnitude(const Mat4& m, const Vec3& p) {
 // Unit vector along v, also where its square under- or overflows; fallback where v is zero or not finite.
 Vec3 unit(const Vec3& v, const Vec3& fallback) {
   const float l2 = length2(v);
-  if (l2 > 1e-30f && l2 < 1e30f) return v / std::sqrt(l2);
+  if (l2 > 1e-30f && l2 < 1e30f) return v * (1 / std::sqrt(l2));
   const float m = max_abs(v);
   if (!(m > 0 && m < infinity)) return fallback;
   const Vec3 scaled = v / m;
   return scaled / std::sqrt(length2(scaled));
 }
 
+// Corners of a triangle where they lie: copies of them would be half the work of a hit.
 struct Triangle {
-  PackedVertex a, b, c;
+  const PackedVertex &a, &b, &c;
 };
 
-PackedVertex vertex(const Mesh& mesh, uint32_t i) {
-  if (!mesh.packed.empty()) return mesh.packed[i];
-  const Vec2 uv = mesh.uvs.empty() ? Vec2(0) : mesh.uvs[i];
-  return {mesh.positions[i], uv.x, mesh.normals.empty() ? Vec3(0) : mesh.normals[i], uv.y};
-}
-
 Triangle triangle_of(const Mesh& mesh, const glm::uvec3& v) {
-  return {vertex(mesh, v.x), vertex(mesh, v.y), vertex(mesh, v.z)};
+  return {mesh.packed[v.x], mesh.packed[v.y], mesh.packed[v.z]};
 }
 
 float magnitude_of(const Triangle& t) { return std::max(max_abs(t.a.p), std::max(max_abs(t.b.p), max_abs(t.c.p))); }
@@ -72,13 +67,9 @@ void set_normal(const Triangle& t, Vec3& normal, float& error) {
     set_sliver_normal(t, normal, error);
 }
 
-PackedTriangle face_of(const Mesh& mesh, uint32_t prim) {
-  return mesh.faces.empty() ? pack_triangle(mesh, prim) : mesh.faces[prim];
-}
-
 // Position, error, ng and uv of a point of a triangle, in the mesh's space; returns the triangle.
-Triangle set_point(const Mesh& mesh, Surface& s) {
-  const PackedTriangle face = face_of(mesh, s.prim);
+inline Triangle set_point(const Mesh& mesh, Surface& s) {
+  const PackedTriangle& face = mesh.faces[s.prim];
   const Triangle t = triangle_of(mesh, face.v);
   const Vec2 b = s.bary;
   const float a = 1 - b.x - b.y;
