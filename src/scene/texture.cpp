@@ -55,9 +55,7 @@ struct Patch {
 inline Patch inner_patch(const Image& image, int x, int y, const Vec2& at) {
   const size_t row = 3 * size_t(image.width);
   const uint8_t* p = &image.bytes[size_t(y) * row + 3 * size_t(x)];
-  const auto color = [&](const uint8_t* c) {
-    return Rgb(image.decode[c[0]], image.decode[c[1]], image.decode[c[2]]);
-  };
+  const auto color = [&](const uint8_t* c) { return Rgb(image.decode[c[0]], image.decode[c[1]], image.decode[c[2]]); };
   return {color(p), color(p + 3), color(p + row), color(p + row + 3), at};
 }
 
