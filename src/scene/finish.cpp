@@ -62,6 +62,7 @@ void set_packed(Mesh& mesh) {
     }
   });
   mesh.packed = std::move(packed);
+  mesh.smooth = !mesh.normals.empty(), mesh.mapped = !mesh.uvs.empty();
   mesh.faces.resize(mesh.triangles.size());
   parallel_ranges(mesh.faces.size(), grain, [&](size_t from, size_t to) {
     for (size_t i = from; i < to; ++i) mesh.faces[i] = pack_triangle(mesh, uint32_t(i));

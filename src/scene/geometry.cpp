@@ -26,26 +26,22 @@ float map_magnitude(const Mat4& m, const Vec3& p) {
 // Unit vector along v, also where its square under- or overflows; fallback where v is zero or not finite.
 Vec3 unit(const Vec3& v, const Vec3& fallback) {
   const float l2 = length2(v);
-  if (l2 > 1e-30f && l2 < 1e30f) return v / std::sqrt(l2);
+  if (l2 > 1e-30f && l2 < 1e30f) return v * (1 / std::sqrt(l2));
   const float m = max_abs(v);
   if (!(m > 0 && m < infinity)) return fallback;
   const Vec3 scaled = v / m;
   return scaled / std::sqrt(length2(scaled));
 }
 
-struct Triangle {
-  PackedVertex a, b, c;
-};
-
 PackedVertex vertex(const Mesh& mesh, uint32_t i) {
-  if (!mesh.packed.empty()) return mesh.packed[i];
   const Vec2 uv = mesh.uvs.empty() ? Vec2(0) : mesh.uvs[i];
   return {mesh.positions[i], uv.x, mesh.normals.empty() ? Vec3(0) : mesh.normals[i], uv.y};
 }
 
-Triangle triangle_of(const Mesh& mesh, const glm::uvec3& v) {
-  return {vertex(mesh, v.x), vertex(mesh, v.y), vertex(mesh, v.z)};
-}
+// Corners of a triangle where they lie: copies of them would be half the work of a hit.
+struct Triangle {
+  const PackedVertex &a, &b, &c;
+};
 
 float magnitude_of(const Triangle& t) { return std::max(max_abs(t.a.p), std::max(max_abs(t.b.p), max_abs(t.c.p))); }
 
@@ -72,26 +68,21 @@ void set_normal(const Triangle& t, Vec3& normal, float& error) {
     set_sliver_normal(t, normal, error);
 }
 
-PackedTriangle face_of(const Mesh& mesh, uint32_t prim) {
-  return mesh.faces.empty() ? pack_triangle(mesh, prim) : mesh.faces[prim];
-}
-
 // Position, error, ng and uv of a point of a triangle, in the mesh's space; returns the triangle.
-Triangle set_point(const Mesh& mesh, Surface& s) {
-  const PackedTriangle face = face_of(mesh, s.prim);
-  const Triangle t = triangle_of(mesh, face.v);
+inline Triangle set_point(const Mesh& mesh, const PackedTriangle& face, Surface& s) {
+  const Triangle t{mesh.packed[face.v.x], mesh.packed[face.v.y], mesh.packed[face.v.z]};
   const Vec2 b = s.bary;
   const float a = 1 - b.x - b.y;
   s.p = t.a.p * a + t.b.p * b.x + t.c.p * b.y;
   s.ng = face.ng;
   s.error = face.error;
-  s.uv = mesh.uvs.empty() ? b : Vec2(t.a.u, t.a.v) * a + Vec2(t.b.u, t.b.v) * b.x + Vec2(t.c.u, t.c.v) * b.y;
+  s.uv = mesh.mapped ? Vec2(t.a.u, t.a.v) * a + Vec2(t.b.u, t.b.v) * b.x + Vec2(t.c.u, t.c.v) * b.y : b;
   return t;
 }
 
 // Solves p = p0 + dpdu u + dpdv v on the triangle.
 void set_tangents(const Mesh& mesh, const Triangle& t, Surface& s) {
-  if (mesh.uvs.empty()) return;
+  if (!mesh.mapped) return;
   const Vec2 d1(t.b.u - t.a.u, t.b.v - t.a.v), d2(t.c.u - t.a.u, t.c.v - t.a.v);
   const float det = d1.x * d2.y - d1.y * d2.x;
   // What is left of a determinant of 0 is rounding, up to 2^-23 of its products (with fused products more than
@@ -121,17 +112,34 @@ void move_to_world(const Instance& instance, Surface& s, Vec3& shading) {
   s.dpdv = map_vector(instance.to_world, s.dpdv);
 }
 
+void set_mesh_surface(const Scene& scene, const Shape& shape, const Mesh& mesh, const PackedTriangle& face,
+                      Surface& s) {
+  const Triangle t = set_point(mesh, face, s);
+  if (shape.tangents) set_tangents(mesh, t, s);
+  Vec3 shading = mesh.smooth ? t.a.n * (1 - s.bary.x - s.bary.y) + t.b.n * s.bary.x + t.c.n * s.bary.y : s.ng;
+  if (s.instance != none) move_to_world(scene.instances[s.instance], s, shading);
+  Vec3 n = mesh.smooth ? unit(shading, s.ng) : s.ng;
+  if (glm::dot(n, s.ng) < 0) n = -n;
+  s.frame = shape.tangents ? make_frame(n, s.dpdu) : make_frame(n);
+}
+
+// A triangle of a mesh that finish has not seen, as it would have packed it.
+Mesh packed_alone(const Mesh& mesh, uint32_t prim) {
+  Mesh one;
+  PackedTriangle face = pack_triangle(mesh, prim);
+  for (int i = 0; i < 3; ++i) one.packed.push_back(vertex(mesh, face.v[i]));
+  face.v = {0, 1, 2};
+  one.faces = {face};
+  one.smooth = !mesh.normals.empty(), one.mapped = !mesh.uvs.empty();
+  return one;
+}
+
 void set_mesh_surface(const Scene& scene, Surface& s) {
   const Shape& shape = scene.shapes[s.shape];
   const Mesh& mesh = scene.meshes[shape.mesh];
-  const Triangle t = set_point(mesh, s);
-  if (shape.tangents) set_tangents(mesh, t, s);
-  const bool smooth = !mesh.normals.empty();
-  Vec3 shading = smooth ? t.a.n * (1 - s.bary.x - s.bary.y) + t.b.n * s.bary.x + t.c.n * s.bary.y : s.ng;
-  if (s.instance != none) move_to_world(scene.instances[s.instance], s, shading);
-  Vec3 n = smooth ? unit(shading, s.ng) : s.ng;
-  if (glm::dot(n, s.ng) < 0) n = -n;
-  s.frame = shape.tangents ? make_frame(n, s.dpdu) : make_frame(n);
+  if (!mesh.faces.empty()) return set_mesh_surface(scene, shape, mesh, mesh.faces[s.prim], s);
+  const Mesh one = packed_alone(mesh, s.prim);
+  set_mesh_surface(scene, shape, one, one.faces[0], s);
 }
 
 // Nearest point of the unit object; its normal; derivatives of position to u and v (of which accel's hits are made).
@@ -246,7 +254,7 @@ Surface sample_triangle(const Scene& scene, uint32_t id, uint32_t prim, const Ve
   s.shape = id;
   s.prim = prim;
   s.bary = to_triangle(u);
-  set_point(mesh, s);
+  set_point(mesh, mesh.faces[prim], s);
   pdf = inverse(double(triangle_area(mesh, prim)));
   return s;
 }
@@ -262,7 +270,7 @@ Surface sample_area(const Scene& scene, uint32_t id, const Vec2& u, float& pdf) 
     Vec2 in_triangle = u;
     s.prim = mesh.area.sample(in_triangle.x);
     s.bary = to_triangle(in_triangle);
-    set_point(mesh, s);
+    set_point(mesh, mesh.faces[s.prim], s);
   } else {
     const UnitPoint at = sample_unit(shape.kind, u, s.uv);
     s.p = map_point(shape.to_world, Vec3(at.p));
@@ -301,7 +309,8 @@ Vec2 sphere_uv(const Shape& sphere, const Vec3& p) {
 
 PackedTriangle pack_triangle(const Mesh& mesh, uint32_t triangle) {
   PackedTriangle packed{mesh.triangles[triangle]};
-  set_normal(triangle_of(mesh, packed.v), packed.ng, packed.error);
+  const PackedVertex a = vertex(mesh, packed.v.x), b = vertex(mesh, packed.v.y), c = vertex(mesh, packed.v.z);
+  set_normal({a, b, c}, packed.ng, packed.error);
   return packed;
 }
 

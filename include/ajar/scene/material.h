@@ -42,13 +42,15 @@ enum class WardKind : uint8_t { ward, duer, balanced };
 /// of the first bounce or of all of them; or it is lost.
 enum class Inner : uint8_t { linear, nonlinear, lost };
 
-/// One <bsdf>. Each kind reads the fields that its line in docs/scenes.md names; the rest keep their defaults.
-struct Material {
+/// One <bsdf>. Each kind reads the fields that its line in docs/scenes.md names; the rest keep their defaults. What
+/// most of them read lies in the first cache line.
+struct alignas(64) Material {
   MaterialKind kind = MaterialKind::diffuse;
   Microfacet distribution = Microfacet::beckmann;
   WardKind ward = WardKind::balanced;
-  Inner inner = Inner::linear;        ///< plastics
-  bool simple = false;                ///< roughdiffuse: Oren and Nayar's qualitative model
+  Inner inner = Inner::linear;  ///< plastics
+  bool simple = false;          ///< roughdiffuse: Oren and Nayar's qualitative model
+  std::array<uint32_t, 4> nested{none, none, none, none};
   Slot reflectance{0.5f};             ///< diffuse, plastics' and phong's diffuse part, principled base colour
   Slot specular{1.0f};                ///< specular reflectance factor
   Slot transmittance{1.0f};           ///< specular transmittance factor
@@ -57,7 +59,6 @@ struct Material {
   Rgb eta{0}, k{1};     ///< conductors: complex index relative to the outside; eta 0, k 1 = perfect mirror
   float ior = 1.5046f;  ///< dielectrics, plastics: inside / outside
   Slot weight{0.5f};    ///< blend weight, mask opacity
-  std::array<uint32_t, 4> nested{none, none, none, none};
   std::array<float, 4> weights{0, 0, 0, 0};  ///< mixture
   Slot map;                                  ///< bumpmap height (already scaled by map_scale), normalmap normal
   float map_scale = 1;

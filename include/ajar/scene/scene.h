@@ -39,15 +39,19 @@ struct Attribute {
 
 /// Triangles in world space (in the group's space for shapes of a shapegroup). normals, uvs and colors may be
 /// empty.
-struct Mesh {
+struct alignas(64) Mesh {
+  // made by finish: all that make_surface asks for, in one cache line
+  std::vector<PackedVertex> packed;  ///< positions, normals and uvs side by side
+  std::vector<PackedTriangle> faces;
+  bool smooth = false;  ///< has normals
+  bool mapped = false;  ///< has uvs
+
   std::vector<Vec3> positions;
   std::vector<Vec3> normals;  ///< unit; empty: face normals
   std::vector<Vec2> uvs;
   std::vector<glm::uvec3> triangles;
   std::vector<Rgb> colors;            ///< per vertex, the attribute vertex_color
   std::vector<Attribute> attributes;  ///< all others
-  std::vector<PackedVertex> packed;   ///< positions, normals and uvs side by side; made by finish
-  std::vector<PackedTriangle> faces;  ///< made by finish
   Distribution area;                  ///< over triangles; filled by finish for meshes that emit
   double total_area = 0;
 };

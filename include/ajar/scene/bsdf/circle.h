@@ -9,10 +9,10 @@
 
 namespace ajar {
 
-/// c ? a : b as a conditional move: for a coin toss such as a random quadrant a branch would be mispredicted half the
-/// time.
+/// c ? a : b by a mask: for a coin toss such as a random quadrant a branch would be mispredicted half the time.
 inline float select(bool c, float a, float b) {
-  return std::bit_cast<float>(c ? std::bit_cast<uint32_t>(a) : std::bit_cast<uint32_t>(b));
+  const uint32_t mask = 0 - uint32_t(c);
+  return std::bit_cast<float>((std::bit_cast<uint32_t>(a) & mask) | (std::bit_cast<uint32_t>(b) & ~mask));
 }
 inline float flip_sign(float x, bool c) {
   return std::bit_cast<float>(std::bit_cast<uint32_t>(x) ^ (uint32_t(c) << 31));
