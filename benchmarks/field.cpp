@@ -127,9 +127,9 @@ void run(const std::string& path, const Settings& set) {
   const int n = set.rounds;
   const auto ns = [&](auto work) { return measure(visits, n, sum, work); };
   const double look_up = ns([&](const Visit& v) { return float(find(f.table, v.p, v.n).cell); });
-  const double reverse = ns([&](const Visit& v) { return pdf(f, other(f, v.side), v.cell, v.wo); });
-  const double draw = ns([&](const Visit& v) { return sample(f, f.of(v.side), v.cell, v.u, p).x + p; });
-  const double density = ns([&](const Visit& v) { return pdf(f, f.of(v.side), v.cell, v.wi); });
+  const double reverse = ns([&](const Visit& v) { return pdf(f, other(f, v.side), v.cell, v.p, v.wo); });
+  const double draw = ns([&](const Visit& v) { return sample(f, f.of(v.side), v.cell, v.p, v.u, p).x + p; });
+  const double density = ns([&](const Visit& v) { return pdf(f, f.of(v.side), v.cell, v.p, v.wi); });
   const double together = ns([&](const Visit& v) { return all(f, v); });
   const double rays = ns([&](const Visit& v) { return trace(accel, v); });
   const double among = ns([&](const Visit& v) { return all(f, v) + trace(accel, v); });

@@ -37,7 +37,7 @@ struct FieldsShown : testing::Test {
     const Place at = find(fields.table, p, n);
     if (at.cell != none) return;
     insert(fields.table, at.missing, uint32_t(fields.cells.size()));
-    fields.cells.push_back({at.missing, make_frame(n), 1});
+    fields.cells.push_back({at.missing, make_frame(n), middle_of(fields.table, at.missing), 1});
     const Frame& frame = fields.cells.back().frame;
     for (Field* f : {&fields.q, &fields.w}) {
       f->cells.push_back({uint32_t(f->nodes.size()), 0, total, 0.5f, 1});
