@@ -431,7 +431,7 @@ TEST_P(Agree, InEveryBlock) {
   if (initials.find_first_of("pv") != std::string::npos)
     for (const char* vpls : {"plain-vpl", "vpl"}) {
       options.integrator = vpls;
-      expect_same(measure(scene, options, {.batches = 16, .passes = 12, .seed = 6000}), bdpt,
+      expect_same(measure(scene, options, {.batches = 16, .passes = 20, .seed = 6000}), bdpt,
                   std::string(vpls) + ", bdpt");
     }
   if (initials.find('l') != std::string::npos) {
