@@ -132,7 +132,7 @@ TEST_F(Render, VersusLeavesTheImageAlone) {
 
 // A single pass has no second half to compare with: that is said, not made up.
 TEST_F(Render, VersusMayHaveTooLittleTime) {
-  const auto json = run({"--spp", "1", "--versus", "bdpt"});
+  const auto json = run({"--spp", "1", "--cpu-time", "100s", "--versus", "bdpt"});
   EXPECT_TRUE(json["versus"]["error_ratio"].is_null());
 }
 
