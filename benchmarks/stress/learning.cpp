@@ -76,7 +76,6 @@ std::string scratch(const char* name) {
   return (std::filesystem::temp_directory_path() / fmt::format("ajar-stress-{}-{}", getpid(), name)).string();
 }
 
-// A scene whose fields come from a file with a value in the wrong place.
 // Through a file, which must be refused.
 void load_back(const StoredFields& stored, const Scene& scene) {
   const std::string path = scratch("fields");
@@ -89,6 +88,7 @@ void load_back(const StoredFields& stored, const Scene& scene) {
   }
 }
 
+// A scene whose fields come from a file with a value in the wrong place.
 Scene poisoned(float value) {
   const Scene scene = usual();
   StoredFields stored = learned(scene, 8);

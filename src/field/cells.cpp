@@ -35,10 +35,22 @@ const CellTable::Slot* find_slot(const CellTable& table, CellKey key) {
   return slot.key == key ? &slot : nullptr;
 }
 
+// Coordinates of a point on the finest level.
+glm::uvec3 finest(const CellTable& table, const Vec3& p) {
+  const Vec3 q = (p - table.origin) * (float(1 << most_cell_levels) / table.width);
+  return glm::uvec3(glm::clamp(q, Vec3(0), Vec3(float(most_coordinate))));
+}
+
+size_t top_cube(const glm::uvec3& finest) {
+  const glm::uvec3 c = glm::min(finest >> uint32_t(most_cell_levels), glm::uvec3(top_cubes));
+  if (c.x == top_cubes || c.y == top_cubes || c.z == top_cubes) return size_t(top_cubes) * top_cubes * top_cubes;
+  return (size_t(c.z) * top_cubes + c.y) * top_cubes + c.x;
+}
+
 // Which part of its cube of level 0 a point is in.
-uint32_t compartment_of(const CellTable& table, const Vec3& p) {
+uint32_t compartment_of(const CellTable& table, const glm::uvec3& finest, const Vec3& p) {
   if (table.cuts.empty()) return 0;
-  const size_t cube = top_cube(table, p);
+  const size_t cube = top_cube(finest);
   int32_t at = cube < table.compartments.size() ? table.compartments[cube] : ~0;
   while (at >= 0) {
     const CellCut& cut = table.cuts[size_t(at)];
@@ -126,19 +138,12 @@ CellTable make_probe_table(std::vector<Probe> probes, double area) {
   return t;
 }
 
-size_t top_cube(const CellTable& table, const Vec3& p) {
-  const Vec3 q = (p - table.origin) / table.width;
-  const glm::ivec3 c(glm::floor(glm::clamp(q, Vec3(-1), Vec3(top_cubes))));
-  if (glm::any(glm::lessThan(c, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(c, glm::ivec3(top_cubes))))
-    return size_t(top_cubes) * top_cubes * top_cubes;
-  return size_t((c.z * top_cubes + c.y) * top_cubes + c.x);
-}
+size_t top_cube(const CellTable& table, const Vec3& p) { return top_cube(finest(table, p)); }
 
 Place find(const CellTable& table, const Vec3& p, const Vec3& n) {
   if (!table.probes.empty()) return find_probe(table, p, n);
-  const Vec3 q = (p - table.origin) * (float(1 << most_cell_levels) / table.width);
-  const glm::uvec3 c(glm::clamp(q, Vec3(0), Vec3(float(most_coordinate))));
-  const uint32_t kind = normal_bin(n) | compartment_of(table, p) << 5;
+  const glm::uvec3 c = finest(table, p);
+  const uint32_t kind = normal_bin(n) | compartment_of(table, c, p) << 5;
   Place out;
   for (int level = 0; level <= most_cell_levels; ++level) {
     const CellKey key = make_key(level, kind, c >> uint32_t(most_cell_levels - level));

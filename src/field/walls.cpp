@@ -21,17 +21,11 @@ struct Spot {
   Vec3 p{0}, n{0, 0, 1};
 };
 
-struct Ray {
-  Vec3 o{0}, d{0, 0, 1};
-  float t_min = 0, t_max = infinity;
-};
-
-bool start(const Scene& scene, Side side, Sampler& sampler, Ray& out) {
+bool start(const Scene& scene, Side side, Sampler& sampler, CameraRay& out) {
   const Vec2 u = sampler.next2(), v = sampler.next2();
   if (side == Side::camera) {
     const Camera& c = scene.camera;
-    const CameraRay ray = generate(c, Vec2(c.crop_x, c.crop_y) + u * Vec2(c.crop_width, c.crop_height), v);
-    out = {ray.o, ray.d, ray.t_min, ray.t_max};
+    out = generate(c, Vec2(c.crop_x, c.crop_y) + u * Vec2(c.crop_width, c.crop_height), v);
     return true;
   }
   if (scene.lights.empty()) return false;
@@ -47,7 +41,7 @@ bool start(const Scene& scene, Side side, Sampler& sampler, Ray& out) {
 // As if all surfaces were matt and lost nothing; what is clear is passed straight.
 void walk(const Scene& scene, const Accel& accel, Side side, uint32_t number, std::vector<Spot>& out) {
   Sampler sampler = make_sampler(SamplerKind::independent, 0, side, number, 0);
-  Ray ray;
+  CameraRay ray;
   if (!start(scene, side, sampler, ray)) return;
   for (uint32_t i = 0; i < bounces; ++i) {
     Hit hit;

@@ -133,7 +133,7 @@ std::vector<Block> blocks_of(const Film& film) {
 
 // Of one sample: where a block's samples saw less than seven eighths of what another trial did, and neither's spread
 // explains it, the rest has as much relative variance as there were samples, at least. Less than half of it would not
-// do: a caustic that is missed lies on other light (measured: docs/stress.md).
+// do: a caustic that is missed lies on other light (measured: docs/results.md).
 double missed_error(const Block& mine, const Block& other, uint32_t passes) {
   const double missed = other.mean - mine.mean;
   if (8 * missed < other.mean || sqr(missed) < 9 * (mine.variance + other.variance)) return 0;

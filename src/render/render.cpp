@@ -319,9 +319,9 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   if (learns(options)) {
     job.learning = &state.learning, job.training = &state.learning.training;
     job.walk.fields = &state.learning.fields;
-    CellTable& table = state.learning.fields.table;
-    if (options.learn.structure == Structure::adaptive && table.compartments.empty())
-      cut_along_walls(scene, accel, table);
+    Fields& fields = state.learning.fields;
+    if (fields.structure == Structure::adaptive && fields.table.compartments.empty())
+      cut_along_walls(scene, accel, fields.table);
   }
   if (is_guided(options.integrator)) {
     job.guided = true;

@@ -53,6 +53,21 @@ TEST_P(Ways, LeaveTheImageRight) {
 INSTANTIATE_TEST_SUITE_P(All, Ways, testing::ValuesIn(ways),
                          [](const auto& test) { return std::string(test.param.name); });
 
+// Fields from elsewhere keep their structure, whatever the options say of fields that start from nothing.
+TEST(Structures, OnlyAdaptiveCellsAreCutAlongWalls) {
+  const Scene scene = room();
+  const Accel accel(scene);
+  for (const Structure structure : {Structure::adaptive, Structure::grid}) {
+    RenderOptions o = statistical("guided-bdpt", 6);
+    o.spp = 2;
+    o.learn.structure = structure;
+    RenderState state = start_render(scene, o);
+    o.learn.structure = Structure::adaptive;
+    render(scene, accel, o, state, {});
+    EXPECT_EQ(state.learning.fields.table.compartments.empty(), structure == Structure::grid);
+  }
+}
+
 // Irradiance (or importance) that camera (light) vertices see on average, as the cells know it. Cells of one size.
 double mean_total(const Fields& fields, Side side) {
   double sum = 0, weights = 0;
