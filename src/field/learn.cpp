@@ -4,26 +4,10 @@
 #include "ajar/core/parallel.h"
 #include "ajar/field/probes.h"
 #include "fixed.h"
+#include "tree.h"
 
 namespace ajar {
 namespace {
-
-// Area of the projected hemisphere under a stratum: [corner, corner + width] of the unit square.
-float stratum_area(const Vec2& corner, float width) {
-  float sum = 0;
-  for (int i = 0; i < 4; ++i) {
-    const Vec2 a = 2.0f * (corner + width * Vec2(0.25f + 0.5f * float(i & 1), 0.25f + 0.5f * float(i >> 1))) - 1.0f;
-    const float m = std::max(std::abs(a.x), std::abs(a.y));
-    sum += m * m / glm::dot(a, a);
-  }
-  return sum * width * width;  // x 4 for the square's area, / 4 samples
-}
-
-// A tree at work: children by index into the same vector, values at leaves.
-struct Node {
-  float mean[16], weight[16], mass[16];
-  int32_t child[16];
-};
 
 struct Work {
   Structure structure = Structure::adaptive;
@@ -32,163 +16,8 @@ struct Work {
   const Field* field = nullptr;
   const Tallies* tallies = nullptr;
   const LearnOptions* options = nullptr;
-  std::vector<Node> nodes;
+  Tree tree;
 };
-
-// Old node with the evidence of its records.
-int32_t take(Work& w, uint32_t old) {
-  const int32_t at = int32_t(w.nodes.size());
-  w.nodes.emplace_back();
-  for (int i = 0; i < 16; ++i) {
-    const size_t k = 16 * size_t(old) + size_t(i);
-    if (w.field->nodes[old].is_divided(i)) {
-      const int32_t child = take(w, w.field->nodes[old].child(i));
-      w.nodes[size_t(at)].child[i] = child;
-      continue;
-    }
-    const float fresh = float(double(w.tallies->weight[k]) * weight_step),
-                kept = w.options->forget * w.field->weight[k];
-    const float sum = kept + fresh;
-    float mean = w.field->mean[k];
-    if (fresh > 0) {
-      const double value = double(w.tallies->value[k]) * value_step * w.field->unit / fresh;
-      mean += float((value - mean) * (fresh / sum));  // (G3)
-    }
-    Node& mine = w.nodes[size_t(at)];
-    mine.child[i] = -1;
-    mine.mean[i] = mean;
-    mine.weight[i] = fresh > 0 ? sum : w.field->weight[k];
-  }
-  return at;
-}
-
-// Fills the masses of a node and all below it; returns their sum.
-float weigh(std::vector<Node>& nodes, int32_t at, const Vec2& corner, float width, float floor) {
-  float sum = 0;
-  for (int i = 0; i < 16; ++i) {
-    const float w = width / 4;
-    const Vec2 c = corner + w * Vec2(i & 3, i >> 2);
-    const int32_t child = nodes[size_t(at)].child[i];
-    const float mass =
-        child >= 0 ? weigh(nodes, child, c, w, floor) : (nodes[size_t(at)].mean[i] + floor) * stratum_area(c, w);
-    nodes[size_t(at)].mass[i] = mass;
-    sum += mass;
-  }
-  return sum;
-}
-
-// The same for patches; returns irradiance over all of them. The grid's masses are without the cosine, as Comi's.
-float weigh_patches(std::vector<Node>& nodes, float floor, Structure structure) {
-  float sum = 0;
-  for (int zone = no_zones; zone < 16; ++zone) {
-    const float cosine = patch_cosine(zone);
-    Node& child = nodes[size_t(nodes[0].child[zone])];
-    float radiance = 0;
-    for (int i = no_segments; i < 16; ++i) radiance += child.mass[i] = child.mean[i] + floor;
-    nodes[0].mass[zone] = radiance * (structure == Structure::grid ? patch_angle : cosine);
-    sum += radiance * cosine;
-  }
-  return sum;
-}
-
-float weigh(Work& w, float floor) {
-  if (w.structure == Structure::adaptive) return weigh(w.nodes, 0, Vec2(0), 1, floor);
-  return weigh_patches(w.nodes, floor, w.structure);
-}
-
-// Largest mean of all strata.
-float best(const std::vector<Node>& nodes) {
-  float most = 0;
-  for (const Node& n : nodes)
-    for (int i = 0; i < 16; ++i)
-      if (n.child[i] < 0) most = std::max(most, n.mean[i]);
-  return most;
-}
-
-// How many records a stratum of a level got, by their weights: those of narrow strata weigh little, since many
-// directions are drawn there.
-constexpr float least_records = 8;
-float records_in(float weight, float share, int level, float mix) {
-  const float even = std::ldexp(1.0f, -4 * (level + 1));
-  return weight * (1 - mix + mix * share / even);
-}
-
-// Divides heavy strata, joins light ones.
-void reshape(Work& w, int32_t at, int level, float total) {
-  for (int i = 0; i < 16; ++i) {
-    const float share = w.nodes[size_t(at)].mass[i] / total;
-    const int32_t child = w.nodes[size_t(at)].child[i];
-    if (child >= 0) {
-      if (share > 0.4f * w.options->divide_stratum) {
-        reshape(w, child, level + 1, total);
-        continue;
-      }
-      float mean = 0, weight = 0;
-      bool leaf = true;
-      for (int j = 0; j < 16; ++j) {
-        leaf = leaf && w.nodes[size_t(child)].child[j] < 0;
-        mean += w.nodes[size_t(child)].mean[j] / 16, weight += w.nodes[size_t(child)].weight[j];
-      }
-      if (!leaf) continue;
-      Node& mine = w.nodes[size_t(at)];
-      mine.child[i] = -1, mine.mean[i] = mean, mine.weight[i] = weight;
-    } else if (share > w.options->divide_stratum && level + 1 < most_levels &&
-               records_in(w.nodes[size_t(at)].weight[i], share, level, w.options->mix) >= least_records) {
-      const int32_t fresh = int32_t(w.nodes.size());
-      w.nodes.emplace_back();
-      Node& mine = w.nodes[size_t(at)];
-      Node& part = w.nodes.back();
-      for (int j = 0; j < 16; ++j)
-        part.mean[j] = mine.mean[i], part.weight[j] = mine.weight[i] / 16, part.child[j] = -1;
-      mine.child[i] = fresh;
-    }
-  }
-}
-
-// Writes shares in steps of 2^-16; every stratum gets one at least, but those before the first one in use.
-void quantise(const Node& from, int first, StrataNode& to) {
-  float sum = 0;
-  for (const float m : from.mass) sum += m;
-  double before = 0;
-  uint32_t last = 0;
-  for (int i = 0; i < 16; ++i) {
-    to.before[i] = uint16_t(last);
-    if (i < first) continue;
-    before += from.mass[i];
-    const uint32_t next =
-        uint32_t(sum > 0 ? std::lround(before / sum * 65536) : 65536 * (i + 1 - first) / (16 - first));
-    last = std::clamp(next, last + 1, 65536u - uint32_t(15 - i));
-  }
-}
-
-// A finished tree, appended: breadth first, so that the children of a node follow each other.
-struct Trees {
-  std::vector<StrataNode> nodes;
-  std::vector<float> mean, weight;
-};
-
-// First place in use of a node of patches.
-int first_of(Structure structure, bool is_root) {
-  return structure == Structure::adaptive ? 0 : is_root ? no_zones : no_segments;
-}
-
-uint32_t append(Trees& out, const std::vector<Node>& nodes, Structure structure) {
-  const uint32_t root = uint32_t(out.nodes.size());
-  std::vector<int32_t> order = {0};
-  for (size_t k = 0; k < order.size(); ++k) {
-    const Node& from = nodes[size_t(order[k])];
-    StrataNode to;
-    quantise(from, first_of(structure, k == 0), to);
-    to.children = root + uint32_t(order.size());
-    for (int i = 0; i < 16; ++i) {
-      if (from.child[i] >= 0) to.divided |= uint16_t(1u << i), order.push_back(from.child[i]);
-      out.mean.push_back(from.child[i] >= 0 ? 0 : from.mean[i]);
-      out.weight.push_back(from.child[i] >= 0 ? 0 : from.weight[i]);
-    }
-    out.nodes.push_back(to);
-  }
-  return root;
-}
 
 // (G4): how much strata with so much evidence behind them are trusted.
 float mix_for(const LearnOptions& options, float weight) { return options.mix * weight / (weight + options.trust); }
@@ -206,25 +35,22 @@ FieldCell learn_cell(Work& w, uint32_t cell, double area, double paths, Trees& o
   const FieldCell& old = w.field->cells[cell];
   const Tallies& t = *w.tallies;
   FieldCell next = old;
-  w.nodes.clear();
-  take(w, old.root);
-  const float bare = weigh(w, 0);
+  w.tree.clear();
+  take(*w.field, t, w.options->forget, old.root, w.tree);
+  const float bare = weigh(w.tree, w.structure, 0);
   const float floor = 0.03f * bare / pi;
-  const float total = weigh(w, floor);
+  const float total = weigh(w.tree, w.structure, floor);
   if (total > 0 && w.structure == Structure::adaptive) {
-    reshape(w, 0, 0, total);
-    weigh(w, floor);
+    reshape(w.tree, total, *w.options);
+    weigh(w.tree, w.structure, floor);
   }
-  next.root = append(out, w.nodes, w.structure);
+  next.root = append(out, w.tree, w.structure);
   if (t.directs[cell] > 0) {
     const double mean = double(t.direct[cell]) * value_step * w.field->unit / double(t.directs[cell]);
     next.direct = old.visits > 0 ? float(0.5 * (old.direct + mean)) : float(mean);
   }
-  next.total = next.direct + (w.rule == Rule::max ? pi * best(w.nodes) : bare);
-  float weight = 0;
-  for (const Node& n : w.nodes)
-    for (int i = 0; i < 16; ++i) weight += n.child[i] < 0 ? n.weight[i] : 0;
-  next.mix = bare > 0 ? mix_for(*w.options, weight) : 0;
+  next.total = next.direct + (w.rule == Rule::max ? pi * most_radiance(w.tree) : bare);
+  next.mix = bare > 0 ? mix_for(*w.options, evidence(w.tree)) : 0;
   const float seen = float(double(t.visits[cell]) / (area * paths));
   if (w.structure == Structure::adaptive) next.near = nearness(*w.fields, w, cell);
   next.visits = old.visits > 0 ? 0.5f * (old.visits + seen) : seen;
@@ -257,45 +83,6 @@ Field learn_field(const Fields& fields, const Field& field, Structure structure,
     next.weight.insert(next.weight.end(), trees[b].weight.begin(), trees[b].weight.end());
   }
   return next;
-}
-
-// Blank strata.
-void add_strata(Field& field, Structure structure) {
-  const bool patches = structure != Structure::adaptive;
-  const size_t root = field.nodes.size();
-  field.nodes.resize(root + (patches ? 1 + zones : 1));
-  for (size_t i = root; i < field.nodes.size(); ++i) quantise({}, first_of(structure, i == root), field.nodes[i]);
-  if (patches)
-    field.nodes[root].divided = uint16_t(0xffff << no_zones), field.nodes[root].children = uint32_t(root + 1);
-  field.mean.resize(16 * field.nodes.size());
-  field.weight.resize(16 * field.nodes.size());
-}
-
-// Copies a cell's strata from another, or makes blank ones.
-void add_cell(Field& field, uint32_t from, Structure structure) {
-  FieldCell cell;
-  cell.root = uint32_t(field.nodes.size());
-  if (from == none) {
-    add_strata(field, structure);
-  } else {
-    const FieldCell& parent = field.cells[from];
-    const uint32_t shift = cell.root - parent.root;
-    std::vector<uint32_t> order = {parent.root};
-    for (size_t k = 0; k < order.size(); ++k) {
-      StrataNode node = field.nodes[order[k]];
-      for (int i = 0; i < 16; ++i) {
-        if (node.is_divided(i)) order.push_back(node.child(i));
-        field.mean.push_back(field.mean[16 * size_t(order[k]) + size_t(i)]);
-        field.weight.push_back(0.25f * field.weight[16 * size_t(order[k]) + size_t(i)]);
-      }
-      node.children += shift;
-      field.nodes.push_back(node);
-    }
-    const uint32_t root = cell.root;
-    cell = parent;
-    cell.root = root;
-  }
-  field.cells.push_back(cell);
 }
 
 void add_cells(Fields& fields, const Sightings& sightings, const LearnOptions& options) {

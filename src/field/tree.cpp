@@ -1,0 +1,213 @@
+#include "tree.h"
+
+#include "fixed.h"
+
+namespace ajar {
+namespace {
+
+// Area of the projected hemisphere under a stratum: [corner, corner + width] of the unit square.
+float stratum_area(const Vec2& corner, float width) {
+  float sum = 0;
+  for (int i = 0; i < 4; ++i) {
+    const Vec2 a = 2.0f * (corner + width * Vec2(0.25f + 0.5f * float(i & 1), 0.25f + 0.5f * float(i >> 1))) - 1.0f;
+    const float m = std::max(std::abs(a.x), std::abs(a.y));
+    sum += m * m / glm::dot(a, a);
+  }
+  return sum * width * width;  // x 4 for the square's area, / 4 samples
+}
+
+// Fills the masses of a node and all below it; returns their sum.
+float weigh_strata(Tree& tree, int32_t at, const Vec2& corner, float width, float floor) {
+  float sum = 0;
+  for (int i = 0; i < 16; ++i) {
+    const float w = width / 4;
+    const Vec2 c = corner + w * Vec2(i & 3, i >> 2);
+    const int32_t child = tree[size_t(at)].child[i];
+    const float mass =
+        child >= 0 ? weigh_strata(tree, child, c, w, floor) : (tree[size_t(at)].mean[i] + floor) * stratum_area(c, w);
+    tree[size_t(at)].mass[i] = mass;
+    sum += mass;
+  }
+  return sum;
+}
+
+// The same for patches; returns irradiance over all of them. The grid's masses are without the cosine, as Comi's.
+float weigh_patches(Tree& tree, float floor, Structure structure) {
+  float sum = 0;
+  for (int zone = no_zones; zone < 16; ++zone) {
+    const float cosine = patch_cosine(zone);
+    TreeNode& child = tree[size_t(tree[0].child[zone])];
+    float radiance = 0;
+    for (int i = no_segments; i < 16; ++i) radiance += child.mass[i] = child.mean[i] + floor;
+    tree[0].mass[zone] = radiance * (structure == Structure::grid ? patch_angle : cosine);
+    sum += radiance * cosine;
+  }
+  return sum;
+}
+
+// How many records a stratum of a level got, by their weights: those of narrow strata weigh little, since many
+// directions are drawn there.
+constexpr float least_records = 8;
+float records_in(float weight, float share, int level, float mix) {
+  const float even = std::ldexp(1.0f, -4 * (level + 1));
+  return weight * (1 - mix + mix * share / even);
+}
+
+void reshape(Tree& tree, int32_t at, int level, float total, const LearnOptions& options) {
+  for (int i = 0; i < 16; ++i) {
+    const float share = tree[size_t(at)].mass[i] / total;
+    const int32_t child = tree[size_t(at)].child[i];
+    if (child >= 0) {
+      if (share > 0.4f * options.divide_stratum) {
+        reshape(tree, child, level + 1, total, options);
+        continue;
+      }
+      float mean = 0, weight = 0;
+      bool leaf = true;
+      for (int j = 0; j < 16; ++j) {
+        leaf = leaf && tree[size_t(child)].child[j] < 0;
+        mean += tree[size_t(child)].mean[j] / 16, weight += tree[size_t(child)].weight[j];
+      }
+      if (!leaf) continue;
+      TreeNode& mine = tree[size_t(at)];
+      mine.child[i] = -1, mine.mean[i] = mean, mine.weight[i] = weight;
+    } else if (share > options.divide_stratum && level + 1 < most_levels &&
+               records_in(tree[size_t(at)].weight[i], share, level, options.mix) >= least_records) {
+      const int32_t fresh = int32_t(tree.size());
+      tree.emplace_back();
+      TreeNode& mine = tree[size_t(at)];
+      TreeNode& part = tree.back();
+      for (int j = 0; j < 16; ++j)
+        part.mean[j] = mine.mean[i], part.weight[j] = mine.weight[i] / 16, part.child[j] = -1;
+      mine.child[i] = fresh;
+    }
+  }
+}
+
+// First place in use of a node of patches.
+int first_of(Structure structure, bool is_root) {
+  return structure == Structure::adaptive ? 0 : is_root ? no_zones : no_segments;
+}
+
+// Writes shares in steps of 2^-16; every stratum gets one at least, but those before the first one in use.
+void quantise(const TreeNode& from, int first, StrataNode& to) {
+  float sum = 0;
+  for (const float m : from.mass) sum += m;
+  double before = 0;
+  uint32_t last = 0;
+  for (int i = 0; i < 16; ++i) {
+    to.before[i] = uint16_t(last);
+    if (i < first) continue;
+    before += from.mass[i];
+    const uint32_t next =
+        uint32_t(sum > 0 ? std::lround(before / sum * 65536) : 65536 * (i + 1 - first) / (16 - first));
+    last = std::clamp(next, last + 1, 65536u - uint32_t(15 - i));
+  }
+}
+
+// Blank strata.
+void add_strata(Field& field, Structure structure) {
+  const bool patches = structure != Structure::adaptive;
+  const size_t root = field.nodes.size();
+  field.nodes.resize(root + (patches ? 1 + zones : 1));
+  for (size_t i = root; i < field.nodes.size(); ++i) quantise({}, first_of(structure, i == root), field.nodes[i]);
+  if (patches)
+    field.nodes[root].divided = uint16_t(0xffff << no_zones), field.nodes[root].children = uint32_t(root + 1);
+  field.mean.resize(16 * field.nodes.size());
+  field.weight.resize(16 * field.nodes.size());
+}
+
+}  // namespace
+
+int32_t take(const Field& field, const Tallies& tallies, float forget, uint32_t node, Tree& tree) {
+  const int32_t at = int32_t(tree.size());
+  tree.emplace_back();
+  for (int i = 0; i < 16; ++i) {
+    const size_t k = 16 * size_t(node) + size_t(i);
+    if (field.nodes[node].is_divided(i)) {
+      const int32_t child = take(field, tallies, forget, field.nodes[node].child(i), tree);
+      tree[size_t(at)].child[i] = child;
+      continue;
+    }
+    const float fresh = float(double(tallies.weight[k]) * weight_step), kept = forget * field.weight[k];
+    const float sum = kept + fresh;
+    float mean = field.mean[k];
+    if (fresh > 0) {
+      const double value = double(tallies.value[k]) * value_step * field.unit / fresh;
+      mean += float((value - mean) * (fresh / sum));  // (G3)
+    }
+    TreeNode& mine = tree[size_t(at)];
+    mine.child[i] = -1;
+    mine.mean[i] = mean;
+    mine.weight[i] = fresh > 0 ? sum : field.weight[k];
+  }
+  return at;
+}
+
+float weigh(Tree& tree, Structure structure, float floor) {
+  if (structure == Structure::adaptive) return weigh_strata(tree, 0, Vec2(0), 1, floor);
+  return weigh_patches(tree, floor, structure);
+}
+
+float most_radiance(const Tree& tree) {
+  float most = 0;
+  for (const TreeNode& n : tree)
+    for (int i = 0; i < 16; ++i)
+      if (n.child[i] < 0) most = std::max(most, n.mean[i]);
+  return most;
+}
+
+float evidence(const Tree& tree) {
+  float sum = 0;
+  for (const TreeNode& n : tree)
+    for (int i = 0; i < 16; ++i) sum += n.child[i] < 0 ? n.weight[i] : 0;
+  return sum;
+}
+
+void reshape(Tree& tree, float total, const LearnOptions& options) { reshape(tree, 0, 0, total, options); }
+
+uint32_t append(Trees& out, const Tree& tree, Structure structure) {
+  const uint32_t root = uint32_t(out.nodes.size());
+  std::vector<int32_t> order = {0};
+  for (size_t k = 0; k < order.size(); ++k) {
+    const TreeNode& from = tree[size_t(order[k])];
+    StrataNode to;
+    quantise(from, first_of(structure, k == 0), to);
+    to.children = root + uint32_t(order.size());
+    for (int i = 0; i < 16; ++i) {
+      if (from.child[i] >= 0) to.divided |= uint16_t(1u << i), order.push_back(from.child[i]);
+      out.mean.push_back(from.child[i] >= 0 ? 0 : from.mean[i]);
+      out.weight.push_back(from.child[i] >= 0 ? 0 : from.weight[i]);
+    }
+    out.nodes.push_back(to);
+  }
+  return root;
+}
+
+void add_cell(Field& field, uint32_t from, Structure structure) {
+  FieldCell cell;
+  cell.root = uint32_t(field.nodes.size());
+  if (from == none) {
+    add_strata(field, structure);
+  } else {
+    const FieldCell& parent = field.cells[from];
+    const uint32_t shift = cell.root - parent.root;
+    std::vector<uint32_t> order = {parent.root};
+    for (size_t k = 0; k < order.size(); ++k) {
+      StrataNode node = field.nodes[order[k]];
+      for (int i = 0; i < 16; ++i) {
+        if (node.is_divided(i)) order.push_back(node.child(i));
+        field.mean.push_back(field.mean[16 * size_t(order[k]) + size_t(i)]);
+        field.weight.push_back(0.25f * field.weight[16 * size_t(order[k]) + size_t(i)]);
+      }
+      node.children += shift;
+      field.nodes.push_back(node);
+    }
+    const uint32_t root = cell.root;
+    cell = parent;
+    cell.root = root;
+  }
+  field.cells.push_back(cell);
+}
+
+}  // namespace ajar
