@@ -41,9 +41,10 @@ RenderOptions render_options(const Arguments& a, const Scene& scene) {
   o.integrator = !a.integrator.empty()                   ? a.integrator
                  : is_integrator(scene.hints.integrator) ? scene.hints.integrator
                                                          : std::string("guided-bdpt");
-  o.spp = uint32_t(a.spp > 0 ? a.spp : scene.hints.spp > 0 ? scene.hints.spp : int(o.spp));
   if (!a.time.empty()) o.seconds = parse_duration("--time", a.time);
   if (!a.cpu_time.empty()) o.cpu_seconds = parse_duration("--cpu-time", a.cpu_time);
+  o.spp = uint32_t(a.spp);
+  if (!is_limited(o)) o.spp = scene.hints.spp > 0 ? uint32_t(scene.hints.spp) : default_spp;
   o.seed = a.seed;
   o.threads = a.threads;
   o.max_depth = a.max_depth != std::numeric_limits<int>::min() ? a.max_depth : scene.hints.max_depth;
@@ -94,9 +95,7 @@ std::string animation_key(const Work& w, const Scene& scene) {
 
 std::string frame_key(const Work& w, int frame) {
   const RenderOptions& o = w.options;
-  const std::string budget = o.seconds > 0 || o.cpu_seconds > 0
-                                 ? fmt::format("{:g} s, {:g} CPU s", o.seconds, o.cpu_seconds)
-                                 : fmt::format("{} spp", o.spp);
+  const std::string budget = fmt::format("{:g} s, {:g} CPU s, {} spp", o.seconds, o.cpu_seconds, o.spp);
   return fmt::format("{} frame {} {}, {}", w.key, frame, describe(w.shooting.timeline, frame), budget);
 }
 

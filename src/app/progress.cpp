@@ -14,8 +14,7 @@ double share_done(const RenderOptions& o, const RenderState& state, const Progre
   if (o.seconds > 0) share = std::max(share, state.stats.seconds / o.seconds);
   if (o.cpu_seconds > 0) share = std::max(share, state.stats.cpu_seconds / o.cpu_seconds);
   if (o.noise > 0 && p.error_spp > 0) share = std::max(share, o.noise / p.error * spp_of(state.film) / p.error_spp);
-  const bool counted = o.noise > 0 ? o.spp > 0 : o.seconds <= 0 && o.cpu_seconds <= 0;
-  if (counted) share = std::max(share, spp_of(state.film) / std::max(1u, o.spp));
+  if (const uint32_t most = most_passes(o); most > 0) share = std::max(share, spp_of(state.film) / most);
   return std::clamp(share, 0.0, 1.0);
 }
 

@@ -33,7 +33,7 @@ Versus run_versus(const Scene& scene, const Accel& accel, RenderOptions options,
   const double part = versus_share / (1 - versus_share);
   const bool counts_cpu = options.cpu_seconds > 0;
   options.integrator = other;
-  options.noise = 0;
+  options.spp = 0, options.noise = 0;
   options.techniques = false;
   options.seconds = counts_cpu ? 0 : std::max(done.stats.seconds * part, 1e-3);
   options.cpu_seconds = counts_cpu ? std::max(done.stats.cpu_seconds * part, 1e-3) : 0;

@@ -38,7 +38,7 @@ double budget_of(const RenderOptions& o, double pixels) {
   if (o.cpu_seconds > 0) most = std::min(most, o.cpu_seconds);
   if (o.seconds > 0) most = std::min(most, o.seconds * threads);
   const double typical = candidates[2].sample * 1e-6;
-  if (o.spp > 0 && (most == infinity || o.noise > 0)) most = std::min(most, o.spp * pixels * typical);
+  if (const uint32_t passes = most_passes(o); passes > 0) most = std::min(most, passes * pixels * typical);
   return most;
 }
 

@@ -337,7 +337,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
     stats.cpu_seconds = process_cpu_seconds() - cpu0;
   };
   start_clocks();
-  const bool timed = options.seconds > 0 || options.cpu_seconds > 0;
+  const uint32_t most = most_passes(options);
   Threads threads(options.threads);
   std::vector<Scratch> scratches(size_t(threads.count()));
   Batch batch;
@@ -346,10 +346,9 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   const uint32_t all = chunk_count(film);
   const auto out_of_budget = [&] {
     read_clocks();
-    if (in_training(state.learning) && !timed) return false;
-    if (!timed && options.noise <= 0) return film.passes >= options.spp;
+    if (in_training(state.learning) && !has_time_limit(options)) return false;
+    if (most > 0 && film.passes >= most) return true;
     if (options.noise > 0) {
-      if (options.spp > 0 && film.passes >= options.spp) return true;
       double error = infinity;
       if (film.chunks == 0 && is_checked(film.passes)) threads.run([&] { error = estimated_error(film); });
       if (error <= options.noise) return true;

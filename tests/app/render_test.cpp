@@ -159,6 +159,14 @@ TEST_F(Render, NoiseOutOfReachEndsAtTheLimit) {
   EXPECT_FALSE(run({"--spp", "2"}).contains("noise")) << "no target, nothing to say about it";
 }
 
+TEST_F(Render, EndsAtTheFirstLimit) {
+  EXPECT_EQ(run({"--spp", "3", "--time", "1h"})["spp"], 3);
+  EXPECT_EQ(run({"--spp", "3", "--cpu-time", "1h"})["spp"], 3);
+  const auto timed = run({"--spp", "1000000", "--cpu-time", "0.05s"});
+  EXPECT_LT(timed["spp"].get<double>(), 1000000);
+  EXPECT_EQ(timed["options"]["light_choice"], "tree");
+}
+
 // The target is a budget: a render may go on from a state that was made for another. The first is met at the first
 // look, after 8 passes; the second cannot be.
 TEST_F(Render, ResumeMayAimLower) {

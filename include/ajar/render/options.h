@@ -10,11 +10,14 @@
 
 namespace ajar {
 
+inline constexpr uint32_t default_spp = 64;
+
 struct RenderOptions {
-  std::string integrator = "bdpt";      ///< one of integrator_names()
-  uint32_t spp = 64;                    ///< passes; with a time budget the budget decides, unless there is a noise too
-  double seconds = 0, cpu_seconds = 0;  ///< budgets after loading, wall and of all threads; 0: none
-  double noise = 0;  ///< estimated relMSE to stop at, with the budgets as limits (spp 0: none); 0: no such target
+  std::string integrator = "bdpt";  ///< one of integrator_names()
+  // Limits, of which the first that is reached ends the render; 0: none. Without any, default_spp.
+  uint32_t spp = 0;                     ///< passes
+  double seconds = 0, cpu_seconds = 0;  ///< after loading, wall and of all threads
+  double noise = 0;                     ///< estimated relMSE
   uint64_t seed = 0;
   int threads = 0;         ///< 0: all
   int max_depth = -1;      ///< edges of a path: 1 sees lights alone; -1: unlimited
@@ -27,6 +30,11 @@ struct RenderOptions {
   bool learn_lights = false;  ///< path and bdpt: learn which lights cells see (LearnOptions::lights), and nothing else
   bool techniques = false;    ///< keep an image of every (s, t)
 };
+
+inline bool has_time_limit(const RenderOptions& o) { return o.seconds > 0 || o.cpu_seconds > 0; }
+inline bool is_limited(const RenderOptions& o) { return o.spp > 0 || has_time_limit(o) || o.noise > 0; }
+/// Passes after which a render ends, whatever else may end it before; 0: as many as the other limits allow.
+inline uint32_t most_passes(const RenderOptions& o) { return is_limited(o) ? o.spp : default_spp; }
 
 /// Path depth at which tracing stops even when it is unlimited: no scene needs it, and it bounds memory.
 inline constexpr int deepest = 4096;
