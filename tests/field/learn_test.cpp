@@ -60,7 +60,7 @@ float weight_of(const Field& f, int stratum) { return f.weight[16 * size_t(f.cel
 
 template <class T>
 bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
 }
 bool same_field(const Field& a, const Field& b) {
   return same_bytes(a.cells, b.cells) && a.nodes == b.nodes && same_bytes(a.mean, b.mean) &&
