@@ -77,11 +77,18 @@ struct Halves {
   Photons photons, few;
 };
 
+/// A light vertex near a camera vertex, and what all up to it bring.
+struct NearPhoton {
+  const Photon* photon = nullptr;
+  float sum = 0;
+};
+
 /// Storage of one thread at work on one chunk; kept from chunk to chunk. Threads share no cache line.
 struct alignas(64) Scratch {
   Subpath camera, light;
   Expectation expected;  ///< of choices
   std::vector<StoreChoice> choices;
+  std::vector<NearPhoton> near;  ///< to the vertex at hand
   Halves* halves = nullptr;  ///< of the chunk
   Halves own_halves;         ///< where those of one chunk are enough
   Counters counters;

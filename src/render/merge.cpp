@@ -8,6 +8,9 @@ namespace {
 // What takes part in a merge: surfaces that face the same way (cosine) and are not far above or below (of the radius).
 constexpr float facing_share = 0.9f, plane_share = 0.2f;
 
+// Of the light vertices that a camera vertex is merged with, so many are looked for.
+constexpr int sights = 2;
+
 // Darts thrown for surface at most.
 constexpr int most_darts = 16;
 
@@ -19,24 +22,60 @@ bool same_surface(const Vertex& v, const Photon& p, float radius) {
   return std::abs(glm::dot(v.guide.ng, p.p - v.p)) < plane_share * radius;
 }
 
-// One over the share of the disc about a vertex that is surface, so that what lies at an edge or in a corner is not
-// taken for dark: the mean number of darts until one hits (Booth 2007).
-float over_coverage(const Job& job, const Sample& sample, const Vertex& v, int t, float radius) {
+// The surface about a camera vertex that it can be merged with.
+struct Disc {
+  const Vertex& v;
+  Frame frame;
+  float radius = 0;
+  float lift = 0;  // of lines of sight over the surface
+};
+
+// Lines of sight run as high as what is merged may lie, so that they do not slip under a door; under one, lower.
+Disc disc_about(const Job& job, const Vertex& v, float radius) {
   const Frame frame = make_frame(v.guide.ng);
-  const float height = plane_share * radius;
-  Sampler sampler = make_sampler(SamplerKind::independent, hash(job.seed, 0xd15c + uint64_t(t)), Side::camera,
-                                 sample.path, sample.pass);
+  const float low = 4 * v.error;
+  float lift = std::max(plane_share * radius, low);
+  Hit hit;
+  if (job.accel->intersect(offset(v.p, v.ng, v.error, frame.n), frame.n, 0, lift, hit)) lift = 0.5f * hit.t;
+  return {v, frame, radius, lift};
+}
+
+// Whether nothing stands between the vertex and a place on its disc. What is behind a wall that stands on the disc is
+// another surface, lit by other lights, and what lies within a solid that stands there is none.
+bool sees(const Job& job, const Disc& disc, const Vec3& place) {
+  return visible(*job.accel, {disc.v.p + disc.frame.n * disc.lift, place - disc.v.p, 1});
+}
+
+// One over the share of the disc that is surface, so that what lies at an edge or in a corner is not taken for dark:
+// the mean number of darts until one hits (Booth 2007).
+float over_coverage(const Job& job, const Disc& disc, Sampler& sampler) {
+  const float height = plane_share * disc.radius;
+  const Frame& frame = disc.frame;
   int darts = 1;
   for (; darts < most_darts; ++darts) {
     const Vec2 u = sampler.next2();
-    const float r = radius * std::sqrt(u.x), phi = 2 * pi * u.y;
-    const Vec3 from = v.p + frame.to_world({r * std::cos(phi), r * std::sin(phi), height});
+    const float r = disc.radius * std::sqrt(u.x), phi = 2 * pi * u.y;
+    const Vec3 from = disc.v.p + frame.to_world({r * std::cos(phi), r * std::sin(phi), height});
     Hit hit;
     if (!job.accel->intersect(from, -frame.n, 0, 2 * height, hit)) continue;
     const Surface at = make_surface(*job.scene, hit, from, -frame.n);
-    if (std::abs(glm::dot(at.ng, frame.n)) > facing_share) break;
+    if (std::abs(glm::dot(at.ng, frame.n)) > facing_share && sees(job, disc, at.p)) break;
   }
   return float(darts);  // (K4)
+}
+
+// The share of what light vertices bring that comes from those in sight: of a few, evenly spaced over the sums. Where
+// all are in sight it is sure.
+float share_in_sight(const Job& job, const Disc& disc, const std::vector<NearPhoton>& near, float u) {
+  const float sum = near.back().sum;
+  size_t i = 0;
+  int seen = 0;
+  for (int k = 0; k < sights; ++k) {
+    const float mark = (float(k) + u) / sights * sum;
+    while (i + 1 < near.size() && !(mark < near[i].sum)) ++i;
+    seen += sees(job, disc, near[i].photon->p);
+  }
+  return float(seen) / sights;  // (K7)
 }
 
 // Sums over the merges at one camera vertex, by s.
@@ -87,7 +126,9 @@ void join_merged(const Job& job, Sample& sample, Scratch& scratch) {
   const float radius = merge_radius(job.walk.merging, v.p), full = merge_density(job.walk.merging, v.p);
   const bool inner = v.merge < full;
   Merged sums;
-  bool any = false;
+  std::vector<NearPhoton>& near = scratch.near;
+  near.clear();
+  float sum = 0;
   for_each_near(job.photons[inner], v.p, radius, [&](const Photon& p) {
     const float cosine = std::abs(glm::dot(v.guide.ng, p.wi));
     if (p.s > most || !same_surface(v, p, radius) || !(cosine > 1e-6f)) return;
@@ -101,11 +142,16 @@ void join_merged(const Job& job, Sample& sample, Scratch& scratch) {
                          : merge_weight(job.walk.heuristic, v.merge, {p.fixed, p.slope}, e.pdf, side, e.pdf_reverse);
     sums.raw[row] += found;
     sums.weighted[row] += found * float(w);
-    any = true;
+    near.push_back({&p, sum += luminance(found) * float(w)});
   });
-  if (any) {
+  if (sum > 0) {
+    Sampler sampler = make_sampler(SamplerKind::independent, hash(job.seed, 0xd15c + uint64_t(t)), Side::camera,
+                                   sample.path, sample.pass);
+    const Disc disc = disc_about(job, v, radius);
     const float few = inner ? float(inner_photons) : 1;
-    add_merged(sums, t, v.beta * (few * over_coverage(job, sample, v, t, radius) / full), sample, scratch);
+    const float seen = share_in_sight(job, disc, near, sampler.next2().x);
+    if (seen > 0)
+      add_merged(sums, t, v.beta * (few * seen * over_coverage(job, disc, sampler) / full), sample, scratch);
   }
   charge(scratch, scratch.ledger->merge_at(0, t).ticks);
 }
