@@ -12,8 +12,6 @@ namespace {
 
 constexpr double level = 1e-6;
 constexpr double bias_of_merging = 0.02;  // relative deviation
-// Merging reaches as far around what stands in the way of all light, so it must not reach far there [pixels].
-constexpr float short_reach = 0.25f;
 
 RenderOptions options_of(const Case& c, const std::string& integrator, double passes) {
   RenderOptions o;
@@ -21,7 +19,6 @@ RenderOptions options_of(const Case& c, const std::string& integrator, double pa
   o.sampler = SamplerKind::independent;  // so that the spread of renders is their variance
   o.max_depth = c.max_depth;
   o.spp = uint32_t(std::lround(c.passes * passes));
-  if (c.answer == 0) o.merge_radius = short_reach;
   if (c.tune) c.tune(o.learn);
   return o;
 }

@@ -144,7 +144,7 @@ void join_merged(const Job& job, Sample& sample, Scratch& scratch) {
     sums.weighted[row] += found * float(w);
     near.push_back({&p, sum += luminance(found) * float(w)});
   });
-  if (sum > 0) {
+  if (!near.empty() && !(sum <= 0)) {  // what is no number is counted when it is added
     Sampler sampler = make_sampler(SamplerKind::independent, hash(job.seed, 0xd15c + uint64_t(t)), Side::camera,
                                    sample.path, sample.pass);
     const Disc disc = disc_about(job, v, radius);
