@@ -11,16 +11,11 @@ constexpr float facing_share = 0.9f, plane_share = 0.2f;
 // Of the light vertices that a camera vertex is merged with, so many are looked for.
 constexpr int sights = 2;
 
+// Smallest disc, of the radius.
+constexpr float least_disc = 0.125f;
+
 // Darts thrown for surface at most.
 constexpr int most_darts = 16;
-
-// Whether what arrives at the photon would arrive at the camera vertex: surfaces that face other ways, and those that
-// lie in front of it or behind, are others.
-bool same_surface(const Vertex& v, const Photon& p, float radius) {
-  const float facing = glm::dot(v.guide.ng, p.n);
-  if ((v.guide.bsdf.opaque ? facing : std::abs(facing)) < facing_share) return false;
-  return std::abs(glm::dot(v.guide.ng, p.p - v.p)) < plane_share * radius;
-}
 
 // The surface about a camera vertex that it can be merged with.
 struct Disc {
@@ -30,14 +25,25 @@ struct Disc {
   float lift = 0;  // of lines of sight over the surface
 };
 
+// Light under a door changes within the height of the gap, so that the disc is smaller where something is near above.
 // Lines of sight run as high as what is merged may lie, so that they do not slip under a door; under one, lower.
 Disc disc_about(const Job& job, const Vertex& v, float radius) {
   const Frame frame = make_frame(v.guide.ng);
-  const float low = 4 * v.error;
-  float lift = std::max(plane_share * radius, low);
-  Hit hit;
-  if (job.accel->intersect(offset(v.p, v.ng, v.error, frame.n), frame.n, 0, lift, hit)) lift = 0.5f * hit.t;
-  return {v, frame, radius, lift};
+  Hit above;
+  above.t = radius;
+  job.accel->intersect(offset(v.p, v.ng, v.error, frame.n), frame.n, 0, radius, above);
+  const float r = std::clamp(2 * above.t, least_disc * radius, radius);  // (K8)
+  return {v, frame, r, std::min(std::max(plane_share * r, 4 * v.error), 0.5f * above.t)};
+}
+
+// Whether what arrives at the photon would arrive at the camera vertex: surfaces that face other ways, and those that
+// lie in front of it or behind, are others.
+bool same_surface(const Disc& disc, const Photon& p) {
+  const Vertex& v = disc.v;
+  if (!(length2(p.p - v.p) < sqr(disc.radius))) return false;
+  const float facing = glm::dot(v.guide.ng, p.n);
+  if ((v.guide.bsdf.opaque ? facing : std::abs(facing)) < facing_share) return false;
+  return std::abs(glm::dot(v.guide.ng, p.p - v.p)) < plane_share * disc.radius;
 }
 
 // Whether nothing stands between the vertex and a place on its disc. What is behind a wall that stands on the disc is
@@ -125,13 +131,14 @@ void join_merged(const Job& job, Sample& sample, Scratch& scratch) {
   const MergeSide side = camera_side(job, camera);
   const float radius = merge_radius(job.walk.merging, v.p), full = merge_density(job.walk.merging, v.p);
   const bool inner = v.merge < full;
+  const Disc disc = disc_about(job, v, radius);
   Merged sums;
   std::vector<NearPhoton>& near = scratch.near;
   near.clear();
   float sum = 0;
   for_each_near(job.photons[inner], v.p, radius, [&](const Photon& p) {
     const float cosine = std::abs(glm::dot(v.guide.ng, p.wi));
-    if (p.s > most || !same_surface(v, p, radius) || !(cosine > 1e-6f)) return;
+    if (p.s > most || !same_surface(disc, p) || !(cosine > 1e-6f)) return;
     const GuideEval e = evaluate(v.guide, p.wi, Mode::radiance);
     if (is_black(e.f_cos)) return;
     ++scratch.ledger->merge_at(p.s, t).joins;
@@ -147,11 +154,10 @@ void join_merged(const Job& job, Sample& sample, Scratch& scratch) {
   if (!near.empty() && !(sum <= 0)) {  // what is no number is counted when it is added
     Sampler sampler = make_sampler(SamplerKind::independent, hash(job.seed, 0xd15c + uint64_t(t)), Side::camera,
                                    sample.path, sample.pass);
-    const Disc disc = disc_about(job, v, radius);
-    const float few = inner ? float(inner_photons) : 1;
+    const float of_disc = full * sqr(disc.radius / radius), few = inner ? float(inner_photons) : 1;
     const float seen = share_in_sight(job, disc, near, sampler.next2().x);
     if (seen > 0)
-      add_merged(sums, t, v.beta * (few * seen * over_coverage(job, disc, sampler) / full), sample, scratch);
+      add_merged(sums, t, v.beta * (few * seen * over_coverage(job, disc, sampler) / of_disc), sample, scratch);
   }
   charge(scratch, scratch.ledger->merge_at(0, t).ticks);
 }
