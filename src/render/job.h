@@ -89,8 +89,8 @@ struct alignas(64) Scratch {
   Expectation expected;  ///< of choices
   std::vector<StoreChoice> choices;
   std::vector<NearPhoton> near;  ///< to the vertex at hand
-  Halves* halves = nullptr;  ///< of the chunk
-  Halves own_halves;         ///< where those of one chunk are enough
+  Halves* halves = nullptr;      ///< of the chunk
+  Halves own_halves;             ///< where those of one chunk are enough
   Counters counters;
   Sightings sightings;
   uint64_t rejected = 0;
