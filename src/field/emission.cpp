@@ -29,6 +29,13 @@ double start_pdf(const LightTree& tree, const Fields* fields, uint32_t place) {
   return of_entry > 0 ? power / of_entry * double(share_of(fields->starts, *cut, entry)) : 0;
 }
 
+// Of a light of the sky.
+double power_share(const LightTree& tree, uint32_t light) {
+  for (const SkyLight& s : tree.sky)
+    if (s.light == light) return power_of(tree, s.first, s.last) / tree.power_before.back();
+  return 0;
+}
+
 uint32_t choose_start(const LightTree& tree, const Fields* fields, float u) {
   if (tree.pieces.size() == 1) return 0;
   const LightCut* cut = cut_of(fields);
@@ -44,9 +51,13 @@ struct Start {
   uint32_t region = none;
 };
 Start start_at(const Scene& scene, const Fields* fields, const LightPoint& point, const Vec3& direction) {
+  Start out;
+  if (!fields && !scene.light_tree.sky.empty()) {  // whole
+    out.density = power_share(scene.light_tree, point.light) * double(pdf_emission(scene, point, direction).direction);
+    return out;
+  }
   PieceDensity found[most_shares];
   const int n = densities_emission(scene, point, direction, found);
-  Start out;
   int best = 0;
   for (int i = 0; i < n; ++i) {
     out.density += double(found[i].pdf) * start_pdf(scene.light_tree, fields, found[i].place);
@@ -164,7 +175,7 @@ void record_start(const Scene& scene, const Fields& fields, Training& training, 
     record(fields.starts, training.starts, entry, power > 0 ? float(double(brings * share) / power) : 0);
   }
   if (!start.point.infinite) return;
-  const uint32_t region = start_at(scene, nullptr, start.point, start.direction).region;
+  const uint32_t region = start_at(scene, &fields, start.point, start.direction).region;
   if (region >= fields.disk.cells.size()) return;
   const float even = inv_pi / (scene.radius * scene.radius);
   record_square(fields.disk, training.disk, region, square_of(scene, start.point.p, start.direction), per_watt,

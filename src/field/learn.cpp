@@ -151,7 +151,10 @@ void learn_choices(const Fields& fields, const Training& training, const LearnOp
   next.starts = learn_lights(tree, fields.starts, training.starts, rules);
   rules.most = LightRules{}.most, rules.divide = LightRules{}.divide, rules.by_power = false;
   if (options.mix > 0) rules.least_asks = 1 / 8.0f;
-  if (options.lights) next.lights = learn_lights(tree, fields.lights, training.lights, rules);
+  if (!options.lights) return;
+  std::vector<Receiver> cells;
+  for (const Cell& c : fields.cells) cells.push_back({c.center, c.frame.n});
+  next.lights = learn_lights(tree, fields.lights, training.lights, rules, cells);
 }
 
 }  // namespace

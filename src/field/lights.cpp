@@ -94,12 +94,28 @@ void unite(const LightTree& tree, const std::vector<uint32_t>& parents, double l
   cut = std::move(out);
 }
 
-void append(std::vector<Work>& cut, const LightTree& tree, const LightRules& rules, LearnedLights& to) {
+// Whether the cut's entries would gain so little over the plain choice that they are not worth the time: both second
+// moments of what comes, over the square of its mean. What an entry brings is taken to be one value or nothing.   (V7)
+bool is_plain(const LightTree& tree, const LightRules& rules, const Receiver& cell, const std::vector<Work>& cut) {
+  double promised = 0, mean = 0, plain = 0, learned = 0;
+  for (const Work& w : cut) promised += double(importance(tree, w.node, cell));
+  for (const Work& w : cut) {
+    const double tried = std::max(double(w.e.tried), 1.0), square = double(w.e.square) / tried;
+    const double part = double(importance(tree, w.node, cell)) / promised;
+    mean += part * std::sqrt(square * double(w.e.hits) / tried);
+    plain += sqr(part) * square / std::max(double(sky_share(tree, cell, w.node)), 1e-30);
+    learned += sqr(part) * square / std::max(w.share, 1e-30);
+  }
+  return !(plain - learned > double(rules.least_gain) * sqr(mean));
+}
+
+void append(std::vector<Work>& cut, const LightTree& tree, const LightRules& rules, bool plain, LearnedLights& to) {
   LightCut c;
   c.first = uint32_t(to.entries.size()), c.count = uint32_t(cut.size());
   const Sum sum = sum_of(cut);
   if (sum.tried > 0)
     c.asks = float(std::clamp(64 * (sum.hits + 1) / sum.tried, double(rules.least_asks), 1.0));  // (V4)
+  c.plain = plain;
   double total = 0, before = 0;
   for (Work& w : cut) {
     const LightNode& n = tree.nodes[w.node];
@@ -114,22 +130,26 @@ void append(std::vector<Work>& cut, const LightTree& tree, const LightRules& rul
   to.cuts.push_back(c);
 }
 
-// A cut's entries with the evidence of the records. Shares are how often entries were chosen, where that was seen.
-void take(const LearnedLights& v, const LightTallies& t, const LightCut& cut, const LightRules& rules,
-          std::vector<Work>& out) {
-  double tried = 0;
+// A cut's entries with the evidence of the records. Shares are how often entries were chosen, where that was seen;
+// where they were not chosen by their weights (cell), what they would have been.
+void take(const LightTree& tree, const LearnedLights& v, const LightTallies& t, const LightCut& cut,
+          const LightRules& rules, const Receiver* cell, std::vector<Work>& out) {
+  double tried = 0, sum = 0;
   for (uint32_t i = cut.first; i < cut.first + cut.count; ++i) tried += double(t.tried[i]);
   out.clear();
   for (uint32_t i = cut.first; i < cut.first + cut.count; ++i) {
     Work w{v.entries[i].node, v.evidence[i], v.entries[i].weight, double(share_of(v, cut, i))};
+    if (cell) w.share = double(w.weight * importance(tree, w.node, *cell));
     if (tried > 0) {  // (V1)
       w.e.square = rules.forget * w.e.square + float(double(t.square[i]) * value_step);
       w.e.hits = rules.forget * w.e.hits + float(t.hits[i]);
       w.e.tried = rules.forget * w.e.tried + float(t.tried[i]);
-      w.share = (32 * w.share + double(t.tried[i])) / (32 + tried);
+      if (!cell) w.share = (32 * w.share + double(t.tried[i])) / (32 + tried);
     }
     out.push_back(w);
+    sum += w.share;
   }
+  for (Work& w : out) w.share /= sum;
 }
 
 }  // namespace
@@ -189,7 +209,7 @@ void add_cut(LearnedLights& v, uint32_t from) {
 }
 
 LearnedLights learn_lights(const LightTree& tree, const LearnedLights& v, const LightTallies& tallies,
-                           const LightRules& rules) {
+                           const LightRules& rules, std::span<const Receiver> cells) {
   LearnedLights next;
   next.unit = v.unit;
   next.cuts.reserve(v.cuts.size()), next.entries.reserve(v.entries.size());
@@ -197,14 +217,16 @@ LearnedLights learn_lights(const LightTree& tree, const LearnedLights& v, const 
   for (uint32_t i = 0; i < tree.nodes.size(); ++i)
     if (const uint32_t left = tree.nodes[i].left; left != 0) parents[left] = parents[left + 1] = i;
   std::vector<Work> cut, divided;
-  for (const LightCut& old : v.cuts) {
-    take(v, tallies, old, rules, cut);
+  for (size_t i = 0; i < v.cuts.size(); ++i) {
+    const Receiver* cell = tree.sky.empty() || cells.empty() ? nullptr : &cells[i];
+    take(tree, v, tallies, v.cuts[i], rules, v.cuts[i].plain ? cell : nullptr, cut);
     weigh(rules, cut);
+    const bool plain = cell && is_plain(tree, rules, *cell, cut);
     unite(tree, parents, 0.2 * double(rules.divide), cut);
     size_t room = cut.size() < rules.most ? rules.most - cut.size() : 0;
     divided.clear();
     for (const Work& w : cut) divide(tree, rules, w, divided, room);
-    append(divided, tree, rules, next);
+    append(divided, tree, rules, plain, next);
   }
   return next;
 }
@@ -212,6 +234,10 @@ LearnedLights learn_lights(const LightTree& tree, const LearnedLights& v, const 
 bool fits(const LearnedLights& v, const LightTree& tree) {
   for (const LightCut& c : v.cuts) {
     uint32_t next = 0;
+    if (tree.nodes.empty()) {  // nothing shines
+      if (c.count != 1 || v.entries[c.first].node != 0) return false;
+      continue;
+    }
     for (uint32_t i = c.first; i < c.first + c.count; ++i) {
       if (v.entries[i].node >= tree.nodes.size()) return false;
       const LightNode& n = tree.nodes[v.entries[i].node];

@@ -14,24 +14,37 @@ const LightCut* cut_of(const Guide& g) {
   return &g.fields->lights.cuts[g.cell];
 }
 
-// What every entry of a cut promises the receiver, times what was learned of it.   (V3)
-struct Chances {
-  float of[LightRules{}.most];
-};
-float chances(const LightTree& tree, const LearnedLights& v, const LightCut& cut, const Receiver& at, Chances& out) {
-  float sum = 0;
-  for (uint32_t i = 0; i < cut.count; ++i) {
-    const LightEntry& e = v.entries[cut.first + i];
-    out.of[i] = e.weight * importance(tree, e.node, at);
-    sum += out.of[i];
-  }
-  return sum < infinity ? sum : 0;
+// Whether the vertex takes the sky's lights whole.
+bool is_plain(const Scene& scene, const LightCut* cut) {
+  return !scene.light_tree.sky.empty() && (!cut || cut->plain != 0);
 }
 
-uint32_t draw(const Chances& c, uint32_t count, float total, float& u) {
-  float at = u * total;
+// What every entry of the vertex's cut promises it, times what was learned of it.   (V3)
+struct Chances {
+  const LightCut* cut = nullptr;  // null: the tree alone
+  Receiver at;
+  float asks = 1, total = 0;
+  float of[LightRules{}.most];
+};
+bool is_cut(const Chances& c) { return c.cut && c.cut->count > 1; }
+void set_chances(const LightTree& tree, const Guide& guide, const Vec3& p, Chances& c) {
+  c.cut = cut_of(guide);
+  c.at = receiver_at(guide, p);
+  c.asks = c.cut ? c.cut->asks : 1;
+  c.total = 0;
+  if (!is_cut(c)) return;
+  for (uint32_t i = 0; i < c.cut->count; ++i) {
+    const LightEntry& e = guide.fields->lights.entries[c.cut->first + i];
+    c.of[i] = e.weight * importance(tree, e.node, c.at);
+    c.total += c.of[i];
+  }
+  if (!(c.total < infinity)) c.total = 0;
+}
+
+uint32_t draw(const Chances& c, float& u) {
+  float at = u * c.total;
   uint32_t i = 0, last = 0;
-  for (; i < count; ++i) {
+  for (; i < c.cut->count; ++i) {
     if (!(c.of[i] > 0)) continue;
     last = i;
     if (at < c.of[i]) break;
@@ -41,62 +54,92 @@ uint32_t draw(const Chances& c, uint32_t count, float total, float& u) {
   return last;
 }
 
-}  // namespace
-
-bool chooses_light(const Scene& scene, const Guide& guide) {
-  const LightCut* cut = cut_of(guide);
-  return scene.light_tree.pieces.size() > 1 || (cut && cut->asks < 1);
-}
-
-bool choose_light(const Scene& scene, const Guide& guide, const Vec3& p, float u, uint32_t& place, float& pdf) {
+// A piece by the chances.
+bool choose_piece(const Scene& scene, const Guide& guide, const Chances& c, float u, uint32_t& place, float& pdf) {
   const LightTree& tree = scene.light_tree;
-  const LightCut* cut = cut_of(guide);
-  const float asks = cut ? cut->asks : 1;
-  place = none, pdf = asks;
-  if (tree.nodes.empty() || (asks < 1 && u >= asks)) return false;
+  place = none, pdf = c.asks;
+  if (tree.nodes.empty() || (c.asks < 1 && u >= c.asks)) return false;
   if (tree.pieces.size() == 1) {
     place = 0;
     return true;
   }
-  if (asks < 1) u = std::min(u / asks, one_minus_epsilon);
-  const Receiver at = receiver_at(guide, p);
+  if (c.asks < 1) u = std::min(u / c.asks, one_minus_epsilon);
   uint32_t node = 0;
   float below;
-  if (cut && cut->count > 1) {
-    Chances c;
-    const float total = chances(tree, guide.fields->lights, *cut, at, c);
-    if (!(total > 0)) return false;
-    const uint32_t entry = draw(c, cut->count, total, u);
-    pdf *= c.of[entry] / total;
-    node = guide.fields->lights.entries[cut->first + entry].node;
+  if (is_cut(c)) {
+    if (!(c.total > 0)) return false;
+    const uint32_t entry = draw(c, u);
+    pdf *= c.of[entry] / c.total;
+    node = guide.fields->lights.entries[c.cut->first + entry].node;
     place = tree.nodes[node].first;
   }
-  if (!choose(tree, node, at, u, place, below)) return false;
+  if (!choose(tree, node, c.at, u, place, below)) return false;
   pdf *= below;
   return pdf > 0;
 }
 
-float light_pdf(const Scene& scene, const Guide& guide, const Vec3& p, uint32_t place) {
+float piece_pdf(const Scene& scene, const Guide& guide, const Chances& c, uint32_t place) {
   const LightTree& tree = scene.light_tree;
-  const LightCut* cut = cut_of(guide);
-  const float asks = cut ? cut->asks : 1;
-  if (tree.pieces.size() == 1) return asks;
-  const Receiver at = receiver_at(guide, p);
-  if (!cut || cut->count == 1) return asks * choice_pdf(tree, 0, at, place);
+  if (tree.pieces.size() == 1) return c.asks;
+  if (!is_cut(c)) return c.asks * choice_pdf(tree, 0, c.at, place);
   const LearnedLights& v = guide.fields->lights;
+  const uint32_t entry = entry_of(v, *c.cut, place);
+  const float chance = c.of[entry - c.cut->first];
+  return chance > 0 ? c.asks * (chance / c.total) * choice_pdf(tree, v.entries[entry].node, c.at, place) : 0;
+}
+
+// A light of the sky as a whole, by power. Which piece that would have been is left open.
+bool sample_plain(const Scene& scene, const Guide& guide, const LightCut* cut, const Vec3& p, float u,
+                  const Vec2& u_point, DirectSample& out) {
+  const float asks = cut ? cut->asks : 1;
+  if (asks < 1) {
+    if (u >= asks) return false;
+    u = std::min(u / asks, one_minus_epsilon);
+  }
+  float pick;
+  const SkyLight& light = choose_of_sky(scene.light_tree, receiver_at(guide, p), u, pick);
+  if (!sample_direct(scene, light.light, p, u_point, out)) return false;
+  out.pdf *= pick * asks;
+  return out.pdf > 0;
+}
+
+double pdf_plain(const Scene& scene, const Guide& guide, const LightCut* cut, const Vec3& p, const LightPoint& point,
+                 const Vec3& wi) {
+  const float pick = sky_pdf(scene.light_tree, receiver_at(guide, p), point.light);
+  const double pdf = point.delta_direction ? 1 : double(pdf_direct(scene, point, p, wi));
+  return pdf * double(pick) * (cut ? double(cut->asks) : 1);
+}
+
+}  // namespace
+
+bool chooses_light(const Scene& scene, const Guide& guide) {
+  const LightCut* cut = cut_of(guide);
+  const bool one = is_plain(scene, cut) ? scene.light_tree.sky.size() == 1 : scene.light_tree.pieces.size() == 1;
+  return !one || (cut && cut->asks < 1);
+}
+
+bool choose_light(const Scene& scene, const Guide& guide, const Vec3& p, float u, uint32_t& place, float& pdf) {
   Chances c;
-  const float total = chances(tree, v, *cut, at, c);
-  const uint32_t entry = entry_of(v, *cut, place);
-  const float chance = c.of[entry - cut->first];
-  return chance > 0 ? asks * (chance / total) * choice_pdf(tree, v.entries[entry].node, at, place) : 0;
+  set_chances(scene.light_tree, guide, p, c);
+  return choose_piece(scene, guide, c, u, place, pdf);
+}
+
+float light_pdf(const Scene& scene, const Guide& guide, const Vec3& p, uint32_t place) {
+  Chances c;
+  set_chances(scene.light_tree, guide, p, c);
+  return piece_pdf(scene, guide, c, place);
 }
 
 bool sample_next_event(const Scene& scene, const Guide& guide, const Vec3& p, float u_choice, const Vec2& u_point,
                        DirectSample& out) {
+  out.point.place = none;
+  if (const LightCut* cut = cut_of(guide); is_plain(scene, cut))
+    return sample_plain(scene, guide, cut, p, u_choice, u_point, out);
+  Chances c;
+  set_chances(scene.light_tree, guide, p, c);
   uint32_t place;
   float pick;
-  out.point.place = none;
-  const bool chosen = choose_light(scene, guide, p, u_choice, place, pick);
+  const bool chosen = choose_piece(scene, guide, c, u_choice, place, pick);
   const bool found = chosen && sample_direct(scene, scene.light_tree.pieces[place], p, u_point, out);
   out.point.place = place;
   if (!found) return false;
@@ -108,33 +151,41 @@ bool sample_next_event(const Scene& scene, const Guide& guide, const Vec3& p, fl
   const int n = densities_direct(scene, out.point, p, out.wi, tiles);
   double sum = 0;
   for (int i = 0; i < n; ++i)
-    sum += double(tiles[i].pdf) * double(tiles[i].place == place ? pick : light_pdf(scene, guide, p, tiles[i].place));
+    sum += double(tiles[i].pdf) * double(tiles[i].place == place ? pick : piece_pdf(scene, guide, c, tiles[i].place));
   out.pdf = float(sum);
   return out.pdf > 0;
 }
 
 double pdf_next_event(const Scene& scene, const Guide& guide, const Vec3& p, const LightPoint& point, const Vec3& wi) {
+  if (const LightCut* cut = cut_of(guide); is_plain(scene, cut)) return pdf_plain(scene, guide, cut, p, point, wi);
   PieceDensity found[most_shares];
   const int n = densities_direct(scene, point, p, wi, found);
+  Chances c;
+  if (n > 0) set_chances(scene.light_tree, guide, p, c);
   double sum = 0;
-  for (int i = 0; i < n; ++i) sum += double(found[i].pdf) * double(light_pdf(scene, guide, p, found[i].place));
+  for (int i = 0; i < n; ++i) sum += double(found[i].pdf) * double(piece_pdf(scene, guide, c, found[i].place));
   return sum;
 }
 
-void record_next_event(const Scene& scene, const Guide& guide, const Vec3& p, Training& training, uint32_t place,
-                       float arrives) {
+void record_next_event(const Scene& scene, const Guide& guide, const Vec3& p, Training& training,
+                       const LightPoint& point, float arrives) {
   const LightCut* cut = cut_of(guide);
-  if (!cut || place == none) return;
+  if (!cut) return;
+  const bool plain = is_plain(scene, cut);
+  const uint32_t place = plain && point.light != none ? place_at(scene, point) : point.place;
+  if (place == none) return;
+  const LightTree& tree = scene.light_tree;
   const LearnedLights& v = guide.fields->lights;
   const uint32_t entry = entry_of(v, *cut, place);
   float brought = 0;
   if (arrives > 0) {
-    const Receiver at = receiver_at(guide, p);
-    Chances c;  // what the entry promises cancels against its chance
-    const float promised = cut->count > 1 ? chances(scene.light_tree, v, *cut, at, c)
-                                          : importance(scene.light_tree, v.entries[entry].node, at);
-    const float weight = cut->count > 1 ? v.entries[entry].weight : 1;
-    brought = promised > 0 ? pi * arrives * cut->asks * weight / promised : 0;  // (V1)
+    Chances c;
+    set_chances(tree, guide, p, c);
+    const uint32_t node = v.entries[entry].node;
+    const float promise = importance(tree, node, c.at);
+    float over = is_cut(c) ? v.entries[entry].weight / c.total : 1 / promise;  // its chance over what it promises
+    if (plain) over = sky_share(tree, c.at, node) / promise;
+    brought = promise > 0 ? pi * arrives * c.asks * over : 0;  // (V1)
   }
   record(v, training.lights, entry, brought);
 }

@@ -11,7 +11,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind fields_kind = {"AJARfd05", "file of fields", "make one with --save-fields",
+constexpr FileKind fields_kind = {"AJARfd06", "file of fields", "make one with --save-fields",
                                   "learn the fields again with --save-fields"};
 
 bool is_amount(float x) { return x >= 0 && x < infinity; }
@@ -121,7 +121,7 @@ void read(Reader& r, uint32_t regions, Views& v) {
 
 template <class Io, class Part>
 void cut_members(Io& io, Part& c) {
-  io.value(c.first), io.value(c.count), io.value(c.asks);
+  io.value(c.first), io.value(c.count), io.value(c.asks), io.value(c.plain);
 }
 
 void write(Writer& w, const LearnedLights& v) {
@@ -137,12 +137,12 @@ void write(Writer& w, const LearnedLights& v) {
 void read(Reader& r, size_t cells, uint32_t most, LearnedLights& v) {
   r.value(v.unit);
   r.require(v.unit > 0 && v.unit < double(infinity));
-  v.cuts.resize(r.count(12));
+  v.cuts.resize(r.count(16));
   r.require(v.cuts.empty() || v.cuts.size() == cells);
   uint32_t next = 0;
   for (LightCut& c : v.cuts) {
     cut_members(r, c);
-    r.require(c.first == next && c.count > 0 && c.count <= most && c.asks > 0 && c.asks <= 1);
+    r.require(c.first == next && c.count > 0 && c.count <= most && c.asks > 0 && c.asks <= 1 && c.plain <= 1);
     next += c.count;
   }
   v.entries.resize(r.count(28));

@@ -51,7 +51,7 @@ bool join_light(const Scene& scene, const Fields* fields, Sampler& sampler, cons
   const Vertex& c = camera[t - 1];
   DirectSample d;
   const bool found = choose_light_point(scene, c.guide, c.p, sampler, d);
-  out.place = d.point.place;
+  out.point = d.point;
   if (!found) return false;
   const GuideEval e = evaluate(c.guide, d.wi, Mode::radiance);
   out.arrives = d.radiance * std::abs(glm::dot(c.ng, d.wi)) / d.pdf;

@@ -69,8 +69,8 @@ void teach_direct(const Work& work, Vertex& v, float received) {
 }
 
 // Which light the vertex asked for, and what it got from it: nothing where something is in the way.
-void teach_lights(const Work& work, const Vertex& v, uint32_t place, float arrives) {
-  record_next_event(*work.job.scene, v.guide, v.p, *work.job.training, place, arrives);
+void teach_lights(const Work& work, const Vertex& v, const LightPoint& point, float arrives) {
+  record_next_event(*work.job.scene, v.guide, v.p, *work.job.training, point, arrives);
   if (!work.job.guided) record_place(v.guide, v.ng, *work.job.training, work.scratch.sightings);
   charge(work.scratch, work.scratch.ledger->learn_ticks);
 }
@@ -146,7 +146,7 @@ void join_next_event(Work& work) {
                    add_if_visible(work, c, 1, t);
   charge_join(work.scratch, 1, t);
   teach_direct(work, camera[t - 1], lit ? luminance(c.arrives) * share_of_next_event(work, c) : 0);
-  if (work.sample.teaches) teach_lights(work, camera[t - 1], c.place, lit ? max_component(c.arrives) : 0);
+  if (work.sample.teaches) teach_lights(work, camera[t - 1], c.point, lit ? max_component(c.arrives) : 0);
 }
 
 // s >= 2: one of all light vertices of the chunk.

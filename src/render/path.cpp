@@ -36,7 +36,7 @@ Rgb direct(const Job& job, const Guide& guide, const Surface& at, Sampler& sampl
   DirectSample d;
   const auto learn = [&](float arrives) {
     if (!teaches) return;
-    record_next_event(*job.scene, guide, at.p, *job.training, d.point.place, arrives);
+    record_next_event(*job.scene, guide, at.p, *job.training, d.point, arrives);
     record_place(guide, at.ng, *job.training, scratch.sightings);
     charge(scratch, scratch.ledger->learn_ticks);
   };

@@ -38,7 +38,6 @@ void set_cone(const Vec2& low, const Vec2& high, const At& at, LightBounds& b) {
 struct Part {
   Tile tile;
   double mass = 0, solid = 0;
-  uint32_t cut = 0;
 };
 
 double mass_of(const Distribution2D& t, const Tile& tile) {
@@ -63,7 +62,7 @@ Part part_of(const Distribution2D& table, const glm::ivec2& low, const glm::ivec
 double cost(const Part& p) { return std::sqrt(p.mass * p.solid); }
 
 // The best of a few straight cuts; false for a single texel.
-bool divide(const Distribution2D& table, const Part& p, int& axis, Part& a, Part& b) {
+bool divide(const Distribution2D& table, const Part& p, Part& a, Part& b) {
   constexpr int tries = 32;
   double least = infinity;
   for (int k = 0; k < 2; ++k) {
@@ -72,41 +71,39 @@ bool divide(const Distribution2D& table, const Part& p, int& axis, Part& a, Part
       glm::ivec2 middle_high = p.tile.high, middle_low = p.tile.low;
       middle_high[k] = middle_low[k] = p.tile.low[k] + size * i / steps;
       const Part left = part_of(table, p.tile.low, middle_high), right = part_of(table, middle_low, p.tile.high);
-      if (const double c = cost(left) + cost(right); c < least) least = c, axis = k, a = left, b = right;
+      if (const double c = cost(left) + cost(right); c < least) least = c, a = left, b = right;
     }
   }
   return least < infinity;
 }
 
 // Divides what wants it most until there are enough tiles.
+static_assert(most_tiles <= 256);  // numbers of one byte
 Tiling tile_up(const Distribution2D& table) {
   Tiling t;
   t.width = table.width, t.height = table.height;
-  t.cuts.emplace_back();
   std::vector<Part> parts = {part_of(table, {0, 0}, {table.width, table.height})};
   while (parts.size() < most_tiles) {
     const auto worst = std::max_element(parts.begin(), parts.end(), [](auto& a, auto& b) { return cost(a) < cost(b); });
-    int axis = 0;
     Part a, b;
     if (!(cost(*worst) > 0)) break;
-    if (!divide(table, *worst, axis, a, b)) {
+    if (!divide(table, *worst, a, b)) {
       worst->solid = 0;  // a texel
       continue;
     }
-    t.cuts[worst->cut] = {axis, b.tile.low[axis], uint32_t(t.cuts.size())};
-    a.cut = uint32_t(t.cuts.size()), b.cut = a.cut + 1;
-    t.cuts.resize(t.cuts.size() + 2);
     *worst = a;
     parts.push_back(b);
   }
+  t.of_texel.resize(size_t(t.width) * size_t(t.height));
   for (Part& p : parts) {
     std::vector<float> rows;
     for (int y = p.tile.low.y; y < p.tile.high.y; ++y) {
       const float* row = table.columns.data() + size_t(y) * (size_t(table.width) + 1);
       rows.push_back(table.rows.pdf(uint32_t(y)) * (row[p.tile.high.x] - row[p.tile.low.x]));
+      uint8_t* of_row = t.of_texel.data() + size_t(y) * size_t(t.width);
+      std::fill(of_row + p.tile.low.x, of_row + p.tile.high.x, uint8_t(t.tiles.size()));
     }
     p.tile.rows = Distribution(rows);
-    t.cuts[p.cut] = {-1, 0, uint32_t(t.tiles.size())};
     t.tiles.push_back(std::move(p.tile));
   }
   return t;
@@ -118,7 +115,10 @@ Tiling even_tiles() {
   Tiling t;
   t.width = grid_width, t.height = grid_height;
   for (int y = 0; y < t.height; ++y)
-    for (int x = 0; x < t.width; ++x) t.tiles.push_back({{x, y}, {x + 1, y + 1}, {}});
+    for (int x = 0; x < t.width; ++x) {
+      t.of_texel.push_back(uint8_t(t.tiles.size()));
+      t.tiles.push_back({{x, y}, {x + 1, y + 1}, {}});
+    }
   return t;
 }
 
@@ -232,14 +232,6 @@ void add_delta(Gatherer& g, uint32_t id, double watts) {
 }
 
 }  // namespace
-
-uint32_t tile_of(const Tiling& t, int x, int y) {
-  if (t.cuts.empty()) return uint32_t(y * t.width + x);
-  const glm::ivec2 at(x, y);
-  const Tiling::Cut* cut = t.cuts.data();
-  while (cut->axis >= 0) cut = &t.cuts[cut->next + (at[cut->axis] >= cut->at ? 1 : 0)];
-  return cut->next;
-}
 
 LightBounds join(const LightBounds& a, const LightBounds& b) {
   if (!(a.weight > 0)) return b;

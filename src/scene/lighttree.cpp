@@ -28,6 +28,7 @@ double cost(const LightBounds& b) { return b.weight > 0 ? b.weight * surface(b) 
 struct Builder {
   LightTree& tree;
   std::vector<BoundedPiece>& pieces;
+  bool sky = false;  // few infinite lights: each is a node
 
   Vec3 middle(size_t i) const { return 0.5f * (pieces[i].bounds.low + pieces[i].bounds.high); }
 };
@@ -37,6 +38,11 @@ constexpr int bins = 16;
 // Where to divide a range: by the surface and orientation measure over bins along its longest axis; the middle where
 // that does not divide it.
 size_t divide(Builder& b, size_t from, size_t to) {
+  if (const uint32_t light = b.pieces[from].piece.light;
+      b.sky && b.pieces[from].infinite && b.pieces[to - 1].piece.light != light) {
+    while (b.pieces[from].piece.light == light) ++from;
+    return from;
+  }
   Vec3 low(infinity), high(-infinity);
   for (size_t i = from; i < to; ++i) low = glm::min(low, b.middle(i)), high = glm::max(high, b.middle(i));
   const Vec3 size = high - low;
@@ -128,12 +134,50 @@ void set_regions(LightTree& t, uint32_t root) {
     for (uint32_t i = t.nodes[t.regions[r]].first; i < t.nodes[t.regions[r]].last; ++i) t.region[i] = r;
 }
 
+// The lights of a scene that has no other ones than a few infinite ones.
+void set_sky(LightTree& t) {
+  for (uint32_t node = 0; node < t.nodes.size(); ++node) {
+    const LightNode& n = t.nodes[node];
+    const auto light = [&](uint32_t place) { return t.pieces[place].light; };
+    const bool whole = light(n.first) == light(n.last - 1) && (n.first == 0 || light(n.first - 1) != light(n.first)) &&
+                       (n.last == t.pieces.size() || light(n.last) != light(n.first));
+    if (!whole) continue;
+    const bool tiled = t.tiling[light(n.first)] != none;
+    t.sky.push_back({light(n.first), n.first, n.last, node, n.weight / t.nodes[0].weight, !tiled});
+  }
+}
+
+// What the sky's lights count for the receiver; their sum.
+float weigh_sky(const LightTree& t, const Receiver& at, float out[most_sky]) {
+  const bool turns = at.n != Vec3(0) && (t.choice == LightChoice::tree || t.choice == LightChoice::learned);
+  float sum = 0;
+  for (size_t i = 0; i < t.sky.size(); ++i) {
+    const SkyLight& s = t.sky[i];
+    out[i] = s.share;
+    if (turns && s.turned) {
+      const LightNode& n = t.nodes[s.node];
+      out[i] *= glm::dot(at.n, n.axis) > -n.sin_spread ? 1 : 1e-4f;
+    }
+    sum += out[i];
+  }
+  return sum;
+}
+
 // Probability of the left child; negative where neither can be.
 float left_share(const LightTree& tree, const LightNode& n, const Receiver& at) {
   const float x = importance(tree, n.left, at), y = importance(tree, n.left + 1, at);
   const float sum = x + y;
   if (!(sum > 0)) return -1;
   return sum < infinity ? x / sum : 0.5f * x / (0.5f * x + 0.5f * y);
+}
+
+// Tiles of one light below a node are chosen by power: they are alike to a receiver, and the walk would take longer
+// than the choice saves.
+bool is_by_power(const LightTree& tree, const LightNode& n) {
+  return n.infinite && tree.pieces[n.first].part != none && tree.pieces[n.last - 1].light == tree.pieces[n.first].light;
+}
+float share_below(const LightTree& tree, const LightNode& n, uint32_t place) {
+  return float(power_of(tree, place, place + 1) / power_of(tree, n.first, n.last));
 }
 
 }  // namespace
@@ -188,7 +232,10 @@ LightTree make_light_tree(const Scene& scene, LightChoice choice) {
   t.nodes.reserve(2 * pieces.size());
   t.nodes.resize(1);
   t.region.assign(pieces.size(), none);
-  Builder b{t, pieces};
+  size_t far = 0;  // lights
+  for (size_t i = lamps; i < pieces.size(); ++i)
+    far += i == lamps || pieces[i].piece.light != pieces[i - 1].piece.light ? 1 : 0;
+  Builder b{t, pieces, far <= most_sky};
   uint32_t sky = 0;
   if (lamps == 0 || lamps == pieces.size()) {
     build(b, 0, 0, pieces.size(), 0);
@@ -206,6 +253,7 @@ LightTree make_light_tree(const Scene& scene, LightChoice choice) {
     t.place[t.first_piece[p.light] + (p.part == none ? 0 : p.part)] = uint32_t(i);
   }
   if (lamps < pieces.size()) set_regions(t, sky);
+  if (lamps == 0 && b.sky) set_sky(t);
   return t;
 }
 
@@ -218,9 +266,10 @@ uint32_t place_of(const LightTree& t, uint32_t light, uint32_t part) {
 size_t bytes(const LightTree& t) {
   size_t sum = t.nodes.size() * sizeof(LightNode) + t.pieces.size() * sizeof(LightPiece) +
                t.power_before.size() * sizeof(double) +
-               4 * (t.first_piece.size() + t.place.size() + t.tiling.size() + t.region.size() + t.regions.size());
+               4 * (t.first_piece.size() + t.place.size() + t.tiling.size() + t.region.size() + t.regions.size()) +
+               t.sky.size() * sizeof(SkyLight);
   for (const Tiling& x : t.tilings) {
-    sum += x.cuts.size() * sizeof(Tiling::Cut) + x.tiles.size() * sizeof(Tile);
+    sum += x.of_texel.size() + x.tiles.size() * sizeof(Tile);
     for (const Tile& tile : x.tiles) sum += tile.rows.cdf.size() * sizeof(float);
   }
   return sum;
@@ -233,6 +282,11 @@ bool choose(const LightTree& tree, uint32_t node, const Receiver& at, float& u, 
     if (n.left == 0) {
       place = n.first;
       return true;
+    }
+    if (is_by_power(tree, n)) {
+      place = choose_by_power(tree, n.first, n.last, u);
+      pdf *= share_below(tree, n, place);
+      return pdf > 0;
     }
     const float left = left_share(tree, n, at);
     if (left < 0) return false;
@@ -251,6 +305,7 @@ float choice_pdf(const LightTree& tree, uint32_t node, const Receiver& at, uint3
   float pdf = 1;
   while (tree.nodes[node].left != 0) {
     const LightNode& n = tree.nodes[node];
+    if (is_by_power(tree, n)) return pdf * share_below(tree, n, place);
     const float left = left_share(tree, n, at);
     if (left < 0) return 0;
     const bool right = place >= tree.nodes[n.left].last;
@@ -258,6 +313,41 @@ float choice_pdf(const LightTree& tree, uint32_t node, const Receiver& at, uint3
     node = n.left + (right ? 1 : 0);
   }
   return pdf;
+}
+
+const SkyLight& choose_of_sky(const LightTree& t, const Receiver& at, float& u, float& pdf) {
+  float weights[most_sky];
+  pdf = 1;
+  if (t.sky.size() == 1) return t.sky[0];
+  const float sum = weigh_sky(t, at, weights);
+  float before = u * sum;
+  size_t i = 0;
+  for (; i + 1 < t.sky.size() && !(before < weights[i]); ++i) before -= weights[i];
+  u = std::clamp(before / weights[i], 0.0f, one_minus_epsilon);
+  pdf = weights[i] / sum;
+  return t.sky[i];
+}
+
+float sky_pdf(const LightTree& t, const Receiver& at, uint32_t light) {
+  float weights[most_sky];
+  if (t.sky.size() == 1) return t.sky[0].light == light ? 1 : 0;
+  const float sum = weigh_sky(t, at, weights);
+  for (size_t i = 0; i < t.sky.size(); ++i)
+    if (t.sky[i].light == light) return weights[i] / sum;
+  return 0;
+}
+
+float sky_share(const LightTree& t, const Receiver& at, uint32_t node) {
+  const LightNode& n = t.nodes[node];
+  float weights[most_sky];
+  const float sum = weigh_sky(t, at, weights);
+  double share = 0;
+  for (size_t i = 0; i < t.sky.size(); ++i) {
+    const uint32_t first = std::max(n.first, t.sky[i].first), last = std::min(n.last, t.sky[i].last);
+    if (first < last)
+      share += double(weights[i] / sum) * power_of(t, first, last) / power_of(t, t.sky[i].first, t.sky[i].last);
+  }
+  return float(share);
 }
 
 uint32_t choose_by_power(const LightTree& t, uint32_t first, uint32_t last, float& u) {

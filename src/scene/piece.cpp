@@ -1,5 +1,7 @@
 // Pieces of lights: what the light tree chooses, sampled one by one.
 
+#include <algorithm>
+
 #include "ajar/core/frame.h"
 #include "ajar/core/warp.h"
 #include "ajar/scene/geometry.h"
@@ -115,6 +117,14 @@ int densities_direct(const Scene& scene, const LightPoint& point, const Vec3& x,
     out[0].pdf = point.delta_position || point.delta_direction ? 1 : pdf_direct(scene, point, x, wi);
   }
   return out[0].pdf > 0 && out[0].pdf < infinity ? 1 : 0;
+}
+
+uint32_t place_at(const Scene& scene, const LightPoint& point) {
+  if (!is_tiled(scene, point.light)) return only_place(scene, point);
+  PieceDensity found[most_shares];
+  const int n = densities_of_tiles(scene, point.light, -point.n, found);
+  const auto less = [](const PieceDensity& a, const PieceDensity& b) { return a.pdf < b.pdf; };
+  return n > 0 ? std::max_element(found, found + n, less)->place : none;
 }
 
 bool sample_emission(const Scene& scene, const LightPiece& piece, const Vec2& u_position, const Vec2& u_direction,

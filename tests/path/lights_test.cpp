@@ -113,6 +113,62 @@ TEST(LearnedLights, DarkCellsAskRarely) {
   EXPECT_EQ(v.cuts[2].asks, 1);
 }
 
+// A sky is drawn whole or by tiles, as its cell says, and MIS knows it.
+TEST(LearnedLights, SkyIsDrawnAsItsCellSays) {
+  for (const LightKind kind : {LightKind::constant, LightKind::envmap}) {
+    Lit t(lit_by(kind), 6, 4000);
+    ASSERT_EQ(t.scene.light_tree.sky.size(), 1u);
+    Subpath found;
+    at_vertices(t, 200, [&](const Vertex& v) {
+      if (found.n == 0 && v.guide.cell != none && t.fields.lights.cuts[v.guide.cell].count > 4) found.add() = v;
+    });
+    ASSERT_EQ(found.n, 1) << "hardly learned";
+    const Vertex& v = found[0];
+    for (const uint32_t plain : {0u, 1u}) {
+      t.fields.lights.cuts[v.guide.cell].plain = plain;
+      kit::ChiOptions o;
+      o.rows = 8, o.columns = 16, o.samples = 30'000, o.seed = 3 + plain;
+      int off = 0;
+      const auto density = [&](const Vec3& w) {
+        return pdf_next_event(t.scene, v.guide, v.p, light_point(t.scene, 0, w), w);
+      };
+      const auto r = kit::chi_square_sphere(
+          [&](const Vec2& u, float extra) -> std::optional<Vec3> {
+            DirectSample d;
+            if (!sample_next_event(t.scene, v.guide, v.p, extra, u, d)) return std::nullopt;
+            off += std::abs(density(d.wi) / double(d.pdf) - 1) > 1e-2;
+            return d.wi;
+          },
+          density, o);
+      EXPECT_TRUE(r.ok) << int(kind) << " plain " << plain << ": " << r.message;
+      EXPECT_LE(off, o.samples / 100);
+    }
+  }
+}
+
+// Tiles are asked for where much of the sky is hidden, and not where all of it is seen.
+TEST(LearnedLights, TilesAreForCellsThatSeeLittle) {
+  const Scene scene = under_sky(LightKind::constant);
+  const uint32_t pieces = uint32_t(scene.light_tree.pieces.size());
+  LearnedLights v;
+  add_cut(v, none), add_cut(v, none), add_cut(v, none);
+  const std::vector<Receiver> cells(3);
+  for (int lesson = 0; lesson < 6; ++lesson) {
+    LightTallies t = start_tallies(v);
+    for (uint32_t i = 0; i < 40 * pieces; ++i) {
+      const uint32_t place = i % pieces;
+      record(v, t, entry_of(v, v.cuts[0], place), 1);
+      record(v, t, entry_of(v, v.cuts[1], place), place < pieces / 8 ? 1.0f : 0.0f);
+    }
+    v = learn_lights(scene.light_tree, v, t, {}, cells);
+  }
+  EXPECT_EQ(v.cuts[0].plain, 1u);
+  EXPECT_EQ(v.cuts[1].plain, 0u);
+  EXPECT_EQ(v.cuts[2].plain, 1u) << "knows nothing";
+  add_cut(v, 1);
+  EXPECT_EQ(v.cuts[3].plain, 0u) << "a new cell begins with its parent's";
+}
+
 // The order in which threads record does not matter.
 TEST(LearnedLights, SumsDoNotDependOnOrder) {
   const Scene scene = divided_room();

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "ajar/scene/lighttree.h"
@@ -28,6 +29,8 @@ struct LightEvidence {
 struct LightCut {
   uint32_t first = 0, count = 0;
   float asks = 1;  ///< probability of a next-event ray at all
+  uint32_t plain =
+      1;  ///< under a sky: its lights are taken whole, by power (LightTree::sky): the entries gain too little
 };
 struct LearnedLights {
   std::vector<LightCut> cuts;
@@ -50,7 +53,9 @@ struct LightRules {
   float divide = 1 / 16.0f;  ///< share of its cut above which an entry is divided
   uint32_t most = 32;        ///< entries of a cut
   float least_asks = 1;      ///< of cells that see no light
-  bool by_power = false;     ///< entries promise their power, whoever asks
+  float least_gain =
+      0.5f;  ///< of relative variance, for which a cut's entries are asked where a plain choice is to be had
+  bool by_power = false;  ///< entries promise their power, whoever asks
 };
 
 /// Index of the cut's entry that holds a piece.
@@ -70,8 +75,9 @@ LightTallies start_tallies(const LearnedLights& v);
 void record(const LearnedLights& v, LightTallies& tallies, uint32_t entry, float brought);
 /// A cut that knows nothing, or a copy of another whose evidence counts a quarter.
 void add_cut(LearnedLights& v, uint32_t from);
+/// cells: where the cuts' vertices are, on the whole; empty: nowhere.
 LearnedLights learn_lights(const LightTree& tree, const LearnedLights& v, const LightTallies& tallies,
-                           const LightRules& rules);
+                           const LightRules& rules, std::span<const Receiver> cells = {});
 /// Whether all cuts are cuts of this tree.
 bool fits(const LearnedLights& v, const LightTree& tree);
 size_t bytes(const LearnedLights& v);

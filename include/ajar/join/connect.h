@@ -17,7 +17,7 @@ struct Candidate {
   Segment segment;  ///< that must be free
   End light, camera;
   Shares shares;
-  uint32_t place = none;  ///< s = 1: of the light's piece that was chosen, in the light tree
+  LightPoint point;  ///< s = 1: of the light that was asked
   Vec2 raster{0};  ///< t = 1: where it lands
   Rgb arrives{0};  ///< at the last vertex of a subpath, from the light or lens itself: s = 0 radiance, s = 1
                    ///< irradiance, t = 1 importance (raster area per area); divided by densities, without visibility

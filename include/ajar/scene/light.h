@@ -95,6 +95,8 @@ inline constexpr int most_shares = 4;
 /// Fills the pieces that find a point of a light from x along unit wi; returns how many there are.
 int densities_direct(const Scene& scene, const LightPoint& point, const Vec3& x, const Vec3& wi,
                      PieceDensity out[most_shares]);
+/// The piece that finds a point of a light, above others; none if it is never chosen.
+uint32_t place_at(const Scene& scene, const LightPoint& point);
 /// False where no point of the light can shine on the side of x that n points to; quick, and true in doubt.
 bool may_light(const Scene& scene, uint32_t light, const Vec3& x, const Vec3& n);
 /// Solid-angle density with which sample_direct at x would have found this point of this light along unit wi; 0 for

@@ -28,19 +28,14 @@ struct Tile {
   Distribution rows;
 };
 
-/// The tiles of one infinite light that is not a single direction: a kd-tree over its texels. A constant light has a
-/// grid of texels of its own: equal in solid angle.
+/// The tiles of one infinite light that is not a single direction. A constant light has a grid of texels of its own:
+/// equal in solid angle.
 struct Tiling {
-  struct Cut {
-    int axis = -1;  ///< 0: left of at, 1: above at; -1: a tile
-    int at = 0;
-    uint32_t next = 0;  ///< cuts next and next + 1; of a tile: its number
-  };
   int width = 0, height = 0;
-  std::vector<Cut> cuts;
+  std::vector<uint8_t> of_texel;  ///< number of every texel's tile, row by row
   std::vector<Tile> tiles;
 };
-uint32_t tile_of(const Tiling& tiling, int x, int y);
+inline uint32_t tile_of(const Tiling& t, int x, int y) { return t.of_texel[size_t(y) * size_t(t.width) + size_t(x)]; }
 
 /// Bounds of the pieces below a node: a ball and a cone of directions that they shine to (infinite: that they are in).
 struct LightNode {
@@ -55,6 +50,14 @@ struct LightNode {
   bool infinite = false;
 };
 
+/// A light of a sky: its pieces [first, last) are one node's of the tree.
+struct SkyLight {
+  uint32_t light = 0, first = 0, last = 0;
+  uint32_t node = 0;
+  float share = 1;      ///< by which it is chosen, all else equal
+  bool turned = false;  ///< of one direction: it may be behind a receiver
+};
+
 struct LightTree {
   LightChoice choice = LightChoice::tree;
   float infinity_scale = 1;           ///< of the importance of what is infinite far away, against that of lamps
@@ -67,10 +70,11 @@ struct LightTree {
   std::vector<uint32_t> tiling;   ///< of every light; none
   std::vector<uint32_t> regions;  ///< nodes that together hold all infinite pieces: a few parts of the sky
   std::vector<uint32_t> region;   ///< of every piece; none for finite ones
+  std::vector<SkyLight> sky;      ///< where nothing but a few infinite lights shine: what is chosen from them whole
 };
 
 /// No more pieces than this by dividing meshes: those that are left stay whole.
-inline constexpr size_t most_pieces = size_t(1) << 18, most_regions_of_sky = 32, most_tiles = 256;
+inline constexpr size_t most_pieces = size_t(1) << 18, most_regions_of_sky = 32, most_tiles = 256, most_sky = 8;
 
 /// Call when lights are prepared and bounds known. O(n log n).
 LightTree make_light_tree(const Scene& scene, LightChoice choice);
@@ -89,6 +93,13 @@ float importance(const LightTree& tree, uint32_t node, const Receiver& at);
 bool choose(const LightTree& tree, uint32_t node, const Receiver& at, float& u, uint32_t& place, float& pdf);
 /// Probability with which choose at the node takes this place, which is below it.
 float choice_pdf(const LightTree& tree, uint32_t node, const Receiver& at, uint32_t place);
+/// The plain choice: one of the sky's lights as a whole, by its power and whether it may be in front of the receiver.
+/// u becomes uniform again.
+const SkyLight& choose_of_sky(const LightTree& tree, const Receiver& at, float& u, float& pdf);
+/// Probability of the same; 0 for what is not of the sky.
+float sky_pdf(const LightTree& tree, const Receiver& at, uint32_t light);
+/// Probability that the plain choice's light comes from below a node.
+float sky_share(const LightTree& tree, const Receiver& at, uint32_t node);
 /// Draws one of the pieces [first, last) by power alone.
 uint32_t choose_by_power(const LightTree& tree, uint32_t first, uint32_t last, float& u);
 inline double power_of(const LightTree& tree, uint32_t first, uint32_t last) {
