@@ -29,8 +29,8 @@ struct LightEvidence {
 struct LightCut {
   uint32_t first = 0, count = 0;
   float asks = 1;  ///< probability of a next-event ray at all
-  uint32_t plain =
-      1;  ///< under a sky: its lights are taken whole, by power (LightTree::sky): the entries gain too little
+  /// Under a sky: its lights are taken whole, by power (LightTree::sky), since entries gain too little.
+  uint32_t plain = 1;
 };
 struct LearnedLights {
   std::vector<LightCut> cuts;
@@ -53,9 +53,8 @@ struct LightRules {
   float divide = 1 / 16.0f;  ///< share of its cut above which an entry is divided
   uint32_t most = 32;        ///< entries of a cut
   float least_asks = 1;      ///< of cells that see no light
-  float least_gain =
-      0.5f;  ///< of relative variance, for which a cut's entries are asked where a plain choice is to be had
-  bool by_power = false;  ///< entries promise their power, whoever asks
+  float least_gain = 0.5f;   ///< of relative variance, for which entries are asked where a plain choice is to be had
+  bool by_power = false;     ///< entries promise their power, whoever asks
 };
 
 /// Index of the cut's entry that holds a piece.
