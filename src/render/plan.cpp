@@ -137,7 +137,7 @@ double time_to(double noise, double pixels, const Plan& plan) {
   return least * 1e-6 * pixels / noise;
 }
 
-// Factor on the time to equal error, of so many passes as the budget pays for those that teach alone.
+// Factor on the time to equal error, of so many passes as the budget pays for those that are dropped.
 double waste_of(double passes) { return passes > blind_generations ? passes / (passes - blind_generations) : infinity; }
 
 // All trials at the size that the budget allows, the camera's left as it was; false where that is too small.
