@@ -1,54 +1,56 @@
 #!/bin/sh
-# The plan against every integrator by hand, at equal CPU time with the pilot counted: relMSE without the worst 0.1 %
-# of pixels, mean over seeds, and the plan's over the best one's. References of our own scenes are made once, by bdpt.
-# Usage: plan.sh AJAR FOLDER [SECONDS] [SEEDS]     scenes: $SCENES, else all of them
+# The plan against every integrator by hand: time to equal error, with the pilot and with its choices of several seeds.
+# ajar bench renders every scene with every integrator (benchmarks/plan.json; finished runs and references are kept), and
+# ajar plan chooses for the same image and budget. A choice costs what the chosen integrator's error at the end of the
+# budget, grown by the share that the pilot took, is over the best one's: the render itself would be the same again.
+# Errors are relMSE without the worst 0.1 % of pixels, less the reference's own, geometric means over seeds.
+# Usage: plan.sh AJAR FOLDER [SEEDS [SECONDS]]    SECONDS: another budget to plan for; THREADS: of ajar, all if empty
 set -e
-ajar=$1 folder=$2 seconds=${3:-20} seeds=${4:-2}
+ajar=$1 folder=$2 seeds=${3:-3} seconds=$4
 root=$(dirname "$0")/..
 shared=${AJAR_SHARED_SCENES:-$root/../shared/scenes}
+threads=${THREADS:+--threads $THREADS}
 mkdir -p "$folder"
-# name, file, size, depth, reference ('-': made here), parameters
-table="cornell-box $shared/cornell-box/scene.xml 256x256 10 $shared/../references/cornell-box-256x256-depth10.exr
-veach-mis $shared/veach-mis/scene.xml 384x216 5 $shared/../references/veach-mis-384x216-depth5.exr
-veach-ajar $shared/veach-ajar/scene.xml 320x180 10 $shared/../references/veach-ajar-320x180-depth10.exr
-box $root/scenes/box/box.xml 128x128 10 -
-sunrise $root/scenes/sunrise/sunrise.xml 128x128 10 -
-door $root/scenes/door/door.xml 128x128 10 -
-glass $root/scenes/glass/glass.xml 128x128 10 -
-materials $root/scenes/materials/materials.xml 128x128 10 -
-wall $root/scenes/wall/wall.xml 128x128 10 -"
-echo "$table" | while read -r name file size depth reference parameters; do
-  case " ${SCENES:-$name} " in *" $name "*) ;; *) continue ;; esac
-  if [ ! -f "$file" ]; then
-    echo "$name: left out, there is no $file" >&2
-    continue
-  fi
-  common="-q --threads 1 --size $size --max-depth $depth $parameters"
-  if [ "$reference" = - ]; then
-    reference=$folder/$name-reference.exr
-    [ -f "$reference" ] || "$ajar" render "$file" $common --integrator bdpt --cpu-time $((seconds * 10))s --seed 999 -o "$reference"
-  fi
+"$ajar" bench "$root/benchmarks/plan.json" -o "$folder/bench" --references "$folder/references" $threads > "$folder/bench.txt"
+# Name, file, size, depth, budget, of the scenes that were rendered.
+python3 - "$folder" "$root/benchmarks" "$shared" "$seconds" > "$folder/scenes.txt" <<'LIST'
+import json, os, sys
+folder, suite, shared, seconds = sys.argv[1:]
+results = json.load(open(folder + '/bench/results.json'))
+for s in results['scenes']:
+    if s['skipped'] or not s['methods']: continue
+    near = os.path.join(suite, s['file'])
+    print(s['name'], near if os.path.exists(near) else os.path.join(shared, s['file']), f"{s['width']}x{s['height']}",
+          s['max_depth'], seconds or results['budget']['cpu_seconds'])
+LIST
+while read -r name file size depth budget; do
   seed=1
   while [ $seed -le "$seeds" ]; do
-    for how in path bdpt guided-path guided-bdpt auto; do
-      image=$folder/$name-$how-$seed
-      if [ $how = auto ]; then option="--plan auto"; else option="--integrator $how"; fi
-      "$ajar" render "$file" $common $option --cpu-time "${seconds}s" --seed $seed -o "$image.exr" 2> /dev/null
-      "$ajar" compare "$image.exr" "$reference" > "$image.error.json"
-    done
+    "$ajar" plan "$file" --size "$size" --max-depth "$depth" --cpu-time "${budget}s" --seed $seed $threads --json > "$folder/$name-$seed.json"
     seed=$((seed + 1))
   done
-  echo "$name" >> "$folder/done"
-done
+done < "$folder/scenes.txt"
 python3 - "$folder" "$seeds" <<'TABLE'
-import json, sys
+import json, math, sys
 folder, seeds = sys.argv[1], range(1, int(sys.argv[2]) + 1)
-ways = ('path', 'bdpt', 'guided-path', 'guided-bdpt', 'auto')
-print('| scene | path | bdpt | guided-path | guided-bdpt | plan | planned | over the best |')
-print('|---|---:|---:|---:|---:|---:|---|---:|')
-for name in dict.fromkeys(open(folder + '/done').read().split()):
-    error = {w: sum(json.load(open(f'{folder}/{name}-{w}-{s}.error.json'))['relmse_trimmed'] for s in seeds) / len(seeds) for w in ways}
-    chosen = {json.load(open(f'{folder}/{name}-auto-{s}.json'))['options']['integrator'] for s in seeds}
-    best = min(error[w] for w in ways[:-1])
-    print(f'| {name} | ' + ' | '.join(f'{error[w]:.2g}' for w in ways) + f' | {", ".join(sorted(chosen))} | {error["auto"] / best:.2f} |')
+budgets = {line.split()[0]: float(line.split()[4]) for line in open(folder + '/scenes.txt')}
+ways = ('path', 'bdpt', 'guided-path', 'guided-bdpt')
+mean = lambda x: math.exp(sum(map(math.log, x)) / len(x))
+print('| scene | path | bdpt | guided-path | guided-bdpt | planned | pilot | plan / best | all / plan |\n|---|---:|---:|---:|---:|---|---:|---:|---:|')
+ratios, gains = [], []
+for scene in json.load(open(folder + '/bench/results.json'))['scenes']:
+    if scene['name'] not in budgets or not all(m['runs'] for m in scene['methods']): continue
+    own = scene['reference']['relmse'] or 0
+    # relMSE of a reference counts all pixels: no more than half of what is measured is taken off.
+    error = {m['name']: mean([max(r['samples'][-1]['relmse_trimmed'] - own, r['samples'][-1]['relmse_trimmed'] / 2) for r in m['runs']])
+             for m in scene['methods']}
+    plans = [json.load(open(f"{folder}/{scene['name']}-{s}.json")) for s in seeds]
+    pilot = sum(p['cpu_seconds'] for p in plans) / len(plans) / budgets[scene['name']]
+    best = min(error.values())
+    costs = [error[p['integrator']] / (1 - min(p['cpu_seconds'] / budgets[scene['name']], 0.5)) for p in plans]
+    ratios.append(mean(costs) / best), gains.append(error['guided-bdpt'] / mean(costs))
+    chosen = [p['integrator'] for p in plans]
+    planned = ', '.join(f"{c} {chosen.count(c)}" for c in dict.fromkeys(chosen))
+    print(f"| {scene['name']} | " + ' | '.join(f'{error[w]:.2g}' for w in ways) + f' | {planned} | {100 * pilot:.0f} % | {ratios[-1]:.2f} | {gains[-1]:.2f} |')
+print(f'| mean | | | | | | | {mean(ratios):.2f} | {mean(gains):.2f} |')
 TABLE

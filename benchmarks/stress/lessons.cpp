@@ -24,16 +24,17 @@ Lesson look(const RenderState& state) {
 
 }  // namespace
 
-std::vector<Lesson> lessons(float albedo, const LearnOptions& learn, uint32_t passes) {
+std::vector<Lesson> lessons(float albedo, const LearnOptions& learn, uint32_t passes, int size, int max_depth) {
   Material wall;
   wall.reflectance = Rgb(albedo);
-  const Scene scene = furnace(Oven::box, wall, Rgb(1), 16);
+  const Scene scene = furnace(Oven::box, wall, Rgb(1), size);
   const Accel accel(scene);
   RenderOptions o;
   o.integrator = "guided-path";
   o.sampler = SamplerKind::independent;
   o.learn = learn;
   o.spp = passes;
+  o.max_depth = max_depth;
   RenderState state = start_render(scene, o);
   std::vector<Lesson> out;
   render(scene, accel, o, state, [&](const RenderState& now) {
@@ -43,10 +44,9 @@ std::vector<Lesson> lessons(float albedo, const LearnOptions& learn, uint32_t pa
   return out;
 }
 
-uint32_t lesson_of_convergence(const std::vector<Lesson>& all, float albedo) {
-  const double share = (1 - std::exp(-1.0)) / (1 - double(albedo));
+uint32_t lesson_of_convergence(const std::vector<Lesson>& all, float albedo, double share) {
   for (const Lesson& l : all)
-    if (l.mean >= share) return l.number;
+    if (l.mean >= share / (1 - double(albedo))) return l.number;
   return 0;
 }
 

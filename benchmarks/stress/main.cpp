@@ -200,30 +200,37 @@ std::string lessons_of_renders() {
   return text;
 }
 
-// Lessons that learning takes when every pass is one, and how far it then goes beyond the answer.
+// Lessons that learning takes when every pass is one, next to what a contraction by the albedo would take, and how far
+// any cell goes beyond the answer on the way. A box of albedo 1 has none: its field may grow by 1 a lesson.
 std::string lessons_to_converge() {
+  constexpr int edges = 8;
+  constexpr double converged = 0.95;
   std::string text =
-      "| albedo | 1/(1−a) | kept of older evidence | lessons to 1−1/e | times (1−a) | after the last | largest cell |\n"
-      "|--:|--:|--:|--:|--:|--:|--:|\n";
-  for (const float albedo : {0.5f, 0.9f, 0.99f, 0.999f, 1.0f})
-    for (const float forget : {0.0f, 0.5f}) {
-      const double inverse = 1 - double(albedo), most = albedo < 1 ? 6 / inverse : 200;
+      "| albedo | 1/(1−a) | paths a lesson | lessons to 5 % | were all entries updated | after the last | "
+      "largest cell ever |\n|--:|--:|--:|--:|--:|--:|--:|\n";
+  for (const float albedo : {0.9f, 0.99f, 0.999f, 1.0f})
+    for (const int size : {16, 64}) {
+      const double inverse = 1 - double(albedo), ideal = std::log(1 - converged) / std::log(double(albedo));
+      const uint32_t most = albedo < 1 ? 2 * uint32_t(std::min(6 * ideal, size > 16 ? 1200.0 : 12000.0) / 2) : 1000;
       LearnOptions learn;
-      learn.forget = forget, learn.train = 2 * uint32_t(std::clamp(most, 20.0, 2000.0) / 2);
-      const std::vector<Lesson> all = lessons(albedo, learn, 0);
-      const double answer = albedo < 1 ? 1 / inverse : double(all.back().number);
-      const uint32_t n = albedo < 1 ? lesson_of_convergence(all, albedo) : 0;
-      text += fmt::format("| {:g} | {} | {:g} | {} | {} | {:.3f} ({}) | {:.3f} |\n", albedo,
-                          albedo < 1 ? fmt::format("{:.0f}", answer) : "∞", forget, n > 0 ? fmt::format("{}", n) : "–",
-                          n > 0 ? fmt::format("{:.2f}", n * inverse) : "–", all.back().mean / answer, all.back().number,
-                          all.back().most / answer);
-      fmt::print(stderr, "albedo {} kept {}: {} lessons\n", albedo, forget, all.size());
+      learn.forget = 0, learn.train = most;
+      const std::vector<Lesson> all = lessons(albedo, learn, 0, size, edges);
+      double largest = 0;
+      for (const Lesson& l : all) largest = std::max(largest, l.most * (albedo < 1 ? inverse : 1.0 / l.number));
+      const uint32_t n = albedo < 1 ? lesson_of_convergence(all, albedo, converged) : 0;
+      text +=
+          fmt::format("| {:g} | {} | {} | {} | {} | {:.3f} ({}) | {:.3f} |\n", albedo,
+                      albedo < 1 ? fmt::format("{:.0f}", 1 / inverse) : "∞", size * size,
+                      n > 0 ? fmt::format("{}", n) : "–", albedo < 1 ? fmt::format("{:.0f}", ideal) : "–",
+                      all.back().mean * (albedo < 1 ? inverse : 1.0 / all.back().number), all.back().number, largest);
+      fmt::print(stderr, "albedo {}, {} paths: {} lessons\n", albedo, size * size, all.size());
     }
   return text;
 }
 
 int show_lessons(const Arguments& a) {
-  write_or_print(a, lessons_to_converge() + "\n" + lessons_of_renders());
+  const std::string table = lessons_to_converge();
+  write_or_print(a, a.large ? table + "\n" + lessons_of_renders() : table);
   return 0;
 }
 
@@ -253,7 +260,8 @@ int main(int argc, char** argv) {
   app.add_option("--integrators", a.integrators, "those to try");
   app.add_option("--batches", a.batches, "independent renders of each")->check(CLI::Range(4, 1024));
   app.add_option("--limit", a.limit, "CPU seconds after which a case is given up");
-  app.add_flag("--lessons", a.lessons, "instead: what is learned of closed boxes, lesson by lesson");
+  app.add_flag("--lessons", a.lessons,
+               "instead: what is learned of closed boxes, lesson by lesson; --large: in renders too");
   app.add_flag("--large", a.large, "cases of minutes and gigabytes too");
   CLI11_PARSE(app, argc, argv);
   try {

@@ -20,11 +20,11 @@ std::string describe(const Plan& plan) {
   if (!plan.trials.empty()) {
     out += fmt::format("pilot at {}x{}, {:.1f} s ({:.1f} s of CPU)\n", plan.width, plan.height, plan.seconds,
                        plan.cpu_seconds);
-    out += fmt::format("  {:<12} {:>6} {:>10} {:>14} {:>22}\n", "integrator", "passes", "us/sample", "relMSE/sample",
-                       "time to equal error");
+    out += fmt::format("  {:<12} {:>6} {:>10} {:>14} {:>8} {:>22}\n", "integrator", "passes", "us/sample",
+                       "relMSE/sample", "+-", "time to equal error");
     for (const Trial& t : plan.trials)
-      out += fmt::format("  {:<12} {:>6} {:>10.2f} {:>14.3g} {:>22.2f}\n", t.integrator, t.passes, t.cost,
-                         t.error + t.unseen, t.price() / cheapest(plan));
+      out += fmt::format("  {:<12} {:>6} {:>10.2f} {:>14.3g} {:>8.2g} {:>22.2f}\n", t.integrator, t.passes, t.cost,
+                         t.error + t.unseen, t.deviation, t.price() / cheapest(plan));
   }
   out += fmt::format("  {:<16} {:<4} {}\n", "part", "on", "why");
   for (const Part& p : plan.parts) out += fmt::format("  {:<16} {:<4} {}\n", p.name, p.on ? "yes" : "no", p.why);
@@ -39,7 +39,9 @@ nlohmann::ordered_json to_json(const Plan& plan) {
                       {"passes", t.passes},
                       {"microseconds", t.cost},
                       {"relmse_per_sample", number_or_null(t.error)},
+                      {"deviation", t.deviation},
                       {"unseen", t.unseen},
+                      {"waste", number_or_null(t.waste)},
                       {"time_to_equal_error", number_or_null(t.price() / cheapest(plan))}});
   for (const Part& p : plan.parts) parts.push_back({{"part", p.name}, {"on", p.on}, {"why", p.why}});
   return {{"integrator", plan.integrator},   {"width", plan.width}, {"height", plan.height}, {"seconds", plan.seconds},

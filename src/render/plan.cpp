@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "ajar/core/error.h"
+#include "ajar/render/trials.h"
 
 namespace ajar {
 namespace {
@@ -16,20 +17,19 @@ namespace {
 // From the simplest to the fullest. What a ray costs with all that hangs on it, measured on three scenes (results.md).
 struct Candidate {
   const char* name;
-  uint32_t passes;  // of the pilot
-  double ray;       // [us]
-  double sample;    // [us] about, before it is measured: for the pilot's size
+  double ray;     // [us]
+  double sample;  // [us] about, before it is measured: for the pilot's size
   bool light_subpaths, guided;
 };
-constexpr Candidate candidates[] = {{"path", 8, 0.23, 2, false, false},
-                                    {"guided-path", 16, 0.38, 5, false, true},
-                                    {"bdpt", 8, 0.225, 6.5, true, false},
-                                    {"guided-bdpt", 16, 0.46, 10, true, true}};
-constexpr double least_pixels = 2000;  // below, a pilot says little
+constexpr Candidate candidates[] = {{"path", 0.23, 2, false, false},
+                                    {"guided-path", 0.38, 5, false, true},
+                                    {"bdpt", 0.225, 6.5, true, false},
+                                    {"guided-bdpt", 0.46, 10, true, true}};
+constexpr uint32_t trial_passes = 12;  // that count
+constexpr double least_pixels = 600;   // below, a pilot says little
 constexpr double first_guess = 20;     // CPU seconds of a render whose end its noise alone decides
 constexpr double hysteresis = 0.9;
 constexpr double still_to_learn = 0.75;  // of a guided integrator's time, where a sample is mostly noise: see choose
-constexpr int block = 8;                 // pixels
 
 // CPU seconds; infinite where a target for the noise alone ends the render.
 double budget_of(const RenderOptions& o, double pixels) {
@@ -45,7 +45,8 @@ double budget_of(const RenderOptions& o, double pixels) {
 // Scales the camera to so many pixels as the pilot of such a budget can afford; false where that is too few.
 bool set_pilot_size(Camera& camera, double budget) {
   double per_pixel = 0;
-  for (const Candidate& c : candidates) per_pixel += c.passes * c.sample * 1e-6;
+  for (const Candidate& c : candidates)
+    per_pixel += (trial_passes + (c.guided ? blind_generations : 0)) * c.sample * 1e-6;
   const double full = double(camera.width) * camera.height;
   const double wanted = std::min(pilot_share * budget / per_pixel, full);
   if (wanted < std::min(least_pixels, full)) return false;
@@ -54,107 +55,26 @@ bool set_pilot_size(Camera& camera, double budget) {
   return true;
 }
 
-// A finished trial with what it saw.
-struct Seen {
-  Trial trial;
-  Film film;
-};
-
-Seen run_trial(const Scene& scene, const Accel& accel, RenderOptions options, const Candidate& c,
-               const Monitor& monitor) {
+// What an integrator sees in passes after those whose numbers guided ones drop, and what a sample costs.
+Trial run_trial(const Scene& scene, const Accel& accel, RenderOptions options, const Candidate& c,
+                const Monitor& monitor, Sight& sight) {
   options.integrator = c.name;
-  options.spp = c.passes;
+  options.spp = trial_passes;
   options.seconds = options.cpu_seconds = options.noise = 0;
   options.techniques = false;
   options.learn.train = 0;
   RenderState state = start_render(scene, options);
-  render(scene, accel, options, state, monitor);
+  if (!c.guided) state.film.dropped = blind_generations;
+  render(scene, accel, options, state, [&](const RenderState& now) {
+    if (now.film.chunks == 0 && now.film.dropped > 0 && now.film.passes > sight.passes.size()) look(now.film, sight);
+    return monitor(now);
+  });
   const Counters& n = state.stats.counters;
   const double rays = double(n.camera_rays + n.light_rays + n.shadow_rays);
-  const double samples = std::max(double(n.camera_paths), 1.0);
-  return {{c.name, state.film.passes, 0, 0, rays / samples * c.ray}, std::move(state.film)};
-}
-
-double mean_of(const Film& film) {
-  double sum = 0;
-  for (size_t i = 0; i < film.pixels(); ++i)
-    sum += luminance(Rgb(film.camera_sum[i] + (film.splats ? film.splat_sum[i] : glm::dvec3(0))));
-  return sum / double(film.pixels()) / std::max(film.passes, 1u);
-}
-
-// Between the error without the worst pixels, which a firefly more or less does not decide, and the error with them so
-// far as they hold the light that was seen: a caustic that is all fireflies must not look like little noise.
-double error_of_pass(const Film& film) {
-  const ErrorEstimate e = estimate_error(film);
-  if (!(e.relmse < infinity)) return infinity;
-  return std::sqrt(e.relmse_trimmed * std::lerp(e.relmse_trimmed, e.relmse, e.trimmed_light)) * film.passes;
-}
-
-// Errors are relative to the image as it would be looked at: exposed to a mean of a fifth, by whoever saw most.
-void expose(std::vector<Seen>& seen) {
-  double mean = 0;
-  for (const Seen& s : seen) mean = std::max(mean, mean_of(s.film));
-  if (!(mean > 0)) return;
-  const double scale = 0.2 / mean;
-  for (Seen& s : seen) {
-    for (auto* sums : {&s.film.camera_sum, &s.film.splat_sum, &s.film.half_sum})
-      for (glm::dvec3& x : *sums) x *= scale;
-    for (glm::dvec3& x : s.film.square_sum) x *= scale * scale;
-    s.trial.error = error_of_pass(s.film);
-  }
-}
-
-struct Block {
-  double mean = 0, variance = 0;  // of the mean, from the halves of its pixels
-  double pixels = 0;
-};
-
-Block block_at(const Film& film, int x0, int y0) {
-  const double n = film.passes, a = (film.passes + 1) / 2, b = film.passes / 2;
-  Block out;
-  for (int y = y0; y < std::min(y0 + block, film.height); ++y)
-    for (int x = x0; x < std::min(x0 + block, film.width); ++x, ++out.pixels) {
-      const size_t i = size_t(y) * size_t(film.width) + size_t(x);
-      const glm::dvec3 sum = film.camera_sum[i] + (film.splats ? film.splat_sum[i] : glm::dvec3(0));
-      const double all = luminance(Rgb(sum)), half = luminance(Rgb(film.half_sum[i]));
-      out.mean += all / n;
-      out.variance += sqr(half / a - (all - half) / b) * a * b / (n * n);
-    }
-  out.mean /= out.pixels, out.variance /= sqr(out.pixels);
-  return out;
-}
-
-std::vector<Block> blocks_of(const Film& film) {
-  std::vector<Block> out;
-  for (int y = 0; y < film.height; y += block)
-    for (int x = 0; x < film.width; x += block) out.push_back(block_at(film, x, y));
-  return out;
-}
-
-// Of one sample: where a block's samples saw less than seven eighths of what another trial did, and neither's spread
-// explains it, the rest has as much relative variance as there were samples, at least. Less than half of it would not
-// do: a caustic that is missed lies on other light (measured: docs/results.md).
-double missed_error(const Block& mine, const Block& other, uint32_t passes) {
-  const double missed = other.mean - mine.mean;
-  if (8 * missed < other.mean || sqr(missed) < 9 * (mine.variance + other.variance)) return 0;
-  return sqr(missed) / (sqr(other.mean) + 0.01) * mine.pixels * passes;
-}
-
-// What no pass of a trial saw cannot be told from its own spread: it is held against what the others saw. Values are
-// not negative and their distributions have long tails, so that who sees more is more likely right.
-void find_unseen(std::vector<Seen>& seen) {
-  std::vector<std::vector<Block>> blocks;
-  for (const Seen& s : seen) blocks.push_back(blocks_of(s.film));
-  for (size_t k = 0; k < seen.size(); ++k) {
-    double sum = 0;
-    for (size_t i = 0; i < blocks[k].size(); ++i) {
-      double most = 0;
-      for (size_t j = 0; j < seen.size(); ++j)
-        if (j != k) most = std::max(most, missed_error(blocks[k][i], blocks[j][i], seen[k].trial.passes));
-      sum += most;
-    }
-    seen[k].trial.unseen = sum / double(std::max(blocks[k].size(), size_t(1)));
-  }
+  Trial t;
+  t.integrator = c.name, t.passes = state.film.passes;
+  t.cost = rays / std::max(double(n.camera_paths), 1.0) * c.ray;
+  return t;
 }
 
 const Trial* find(const Plan& plan, const std::string& name) {
@@ -217,25 +137,34 @@ double time_to(double noise, double pixels, const Plan& plan) {
   return least * 1e-6 * pixels / noise;
 }
 
+// Factor on the time to equal error, of so many passes as the budget pays for those that are dropped.
+double waste_of(double passes) { return passes > blind_generations ? passes / (passes - blind_generations) : infinity; }
+
 // All trials at the size that the budget allows, the camera's left as it was; false where that is too small.
 bool run_pilot(Scene& scene, const Accel& accel, const RenderOptions& options, double budget, const Monitor& monitor,
                Plan& plan) {
   const Camera camera = scene.camera;
+  const double pixels = double(camera.width) * camera.height;
   if (!set_pilot_size(scene.camera, budget)) return false;
   plan.width = scene.camera.width, plan.height = scene.camera.height;
-  std::vector<Seen> seen;
+  std::vector<Sight> sights;
+  plan.trials.clear();
   bool go_on = true;
   const Monitor watch = [&](const RenderState& state) { return go_on = !monitor || monitor(state); };
   for (const Candidate& c : candidates) {
-    Seen s = run_trial(scene, accel, options, c, watch);
+    Sight sight;
+    Trial trial = run_trial(scene, accel, options, c, watch, sight);
     if (!go_on) break;
-    seen.push_back(std::move(s));
+    plan.trials.push_back(std::move(trial));
+    sights.push_back(std::move(sight));
   }
   scene.camera = camera;
-  expose(seen);
-  find_unseen(seen);
-  plan.trials.clear();
-  for (const Seen& s : seen) plan.trials.push_back(s.trial);
+  const std::vector<Judgement> judgements = judge(sights);
+  for (size_t i = 0; i < sights.size(); ++i) {
+    Trial& t = plan.trials[i];
+    t.error = judgements[i].error, t.deviation = judgements[i].deviation, t.unseen = judgements[i].unseen;
+    if (candidates[i].guided) t.waste = waste_of(budget * 1e6 / (pixels * t.cost));
+  }
   return true;
 }
 

@@ -111,7 +111,7 @@ TEST(Lessons, ComeAsFastAsTheAlbedoAllows) {
   LearnOptions learn;
   learn.train = 40, learn.forget = 0;
   const double expected = -1 / std::log(0.9);
-  const uint32_t n = lesson_of_convergence(lessons(0.9f, learn, 0), 0.9f);
+  const uint32_t n = lesson_of_convergence(lessons(0.9f, learn, 0), 0.9f, 1 - std::exp(-1.0));
   EXPECT_GT(n, 0.8 * expected);
   EXPECT_LT(n, 4 * expected);
 }

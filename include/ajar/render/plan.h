@@ -9,12 +9,14 @@ namespace ajar {
 /// One integrator in the pilot.
 struct Trial {
   std::string integrator;
-  uint32_t passes = 0;  ///< that count; guided integrators dropped more
-  double error = 0;     ///< estimated relMSE of one pass, exposed
-  double unseen = 0;    ///< the same of what its samples missed and others saw, at least
-  double cost = 0;      ///< of a sample [us], reckoned from its rays, so that it does not depend on the clock
-  /// Time to equal error: what decides. Infinite where nothing but black was seen.
-  double price() const { return (error + unseen) * cost; }
+  uint32_t passes = 0;   ///< that count; guided integrators dropped more
+  double error = 0;      ///< relMSE of a sample, exposed
+  double deviation = 0;  ///< standard deviation of that
+  double unseen = 0;     ///< beyond that, of what its samples missed and others saw, at least
+  double cost = 0;       ///< of a sample [us], reckoned from its rays, so that it does not depend on the clock
+  double waste = 1;      ///< factor on the time: samples that are dropped since they only teach
+  /// Time to equal error, carefully: what decides. Infinite where nothing but black was seen.
+  double price() const { return (error + 2 * deviation + unseen) * cost * waste; }
 };
 
 /// A part of the method.
