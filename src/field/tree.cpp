@@ -45,6 +45,10 @@ float weigh_patches(Tree& tree, float floor, Structure structure) {
   return sum;
 }
 
+// Share of a stratum's evidence that its parts begin with: what it is alone is no evidence that they are alike, and
+// their own first records are to tell them apart.
+constexpr float inherited = 0.1f;  // (G10)
+
 // How many records a stratum of a level got, by their weights: those of narrow strata weigh little, since many
 // directions are drawn there.
 constexpr float least_records = 8;
@@ -78,7 +82,7 @@ void reshape(Tree& tree, int32_t at, int level, float total, const LearnOptions&
       TreeNode& mine = tree[size_t(at)];
       TreeNode& part = tree.back();
       for (int j = 0; j < 16; ++j)
-        part.mean[j] = mine.mean[i], part.weight[j] = mine.weight[i] / 16, part.child[j] = -1;
+        part.mean[j] = mine.mean[i], part.weight[j] = inherited * mine.weight[i] / 16, part.child[j] = -1;
       mine.child[i] = fresh;
     }
   }
