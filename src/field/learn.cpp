@@ -38,6 +38,7 @@ FieldCell learn_cell(Work& w, uint32_t cell, double area, double paths, Trees& o
   w.tree.clear();
   take(*w.field, t, w.options->forget, old.root, w.tree);
   const float bare = weigh(w.tree, w.structure, 0);
+  const float known = evidence(w.tree);
   const float floor = 0.03f * bare / pi;
   const float total = weigh(w.tree, w.structure, floor);
   if (total > 0 && w.structure == Structure::adaptive) {
@@ -50,7 +51,7 @@ FieldCell learn_cell(Work& w, uint32_t cell, double area, double paths, Trees& o
     next.direct = old.visits > 0 ? float(0.5 * (old.direct + mean)) : float(mean);
   }
   next.total = next.direct + (w.rule == Rule::max ? pi * most_radiance(w.tree) : bare);
-  next.mix = bare > 0 ? mix_for(*w.options, evidence(w.tree)) : 0;
+  next.mix = bare > 0 ? mix_for(*w.options, known) : 0;
   const float seen = float(double(t.visits[cell]) / (area * paths));
   if (w.structure == Structure::adaptive) next.near = nearness(*w.fields, w, cell);
   next.visits = old.visits > 0 ? 0.5f * (old.visits + seen) : seen;

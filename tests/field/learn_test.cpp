@@ -161,6 +161,7 @@ TEST(Learn, HeavyStrataDivideAndLightOnesJoin) {
     EXPECT_FLOAT_EQ(a.q.mean[16 * root.child(5) + i], 1);
     EXPECT_FLOAT_EQ(a.q.weight[16 * root.child(5) + i], 0.1f) << "a tenth of the whole's evidence";
   }
+  EXPECT_FLOAT_EQ(a.q.cells[0].mix, 0.8f * 31 / (31 + 32)) << "dividing costs no trust";
   EXPECT_EQ(a.w.nodes.size(), 1u);
 
   // Evidence goes to the part that it is for, and counts ten times what the part began with.
