@@ -57,6 +57,31 @@ void add(LightStore& store, const Subpath& light, double share) {
   store.vertices.insert(store.vertices.end(), light.vertices.begin(), light.vertices.begin() + last);
 }
 
+// Share of the choice that is even, whatever the fields say.
+constexpr double evenly = 0.5;
+
+void prefer(LightStore& store, float u) {
+  const size_t n = store.places.size();
+  std::vector<double> worth(n);
+  double all = 0;
+  for (size_t i = 0; i < n; ++i) {
+    const Vertex& v = store.subpath(store.places[i]).back();
+    all += worth[i] = promise(v.guide, v.beta).beyond;
+  }
+  if (!(all > 0) || !(all < infinity)) return;
+  std::vector<LightStore::Place> drawn;
+  double sum = 0;
+  for (size_t i = 0; i < n; ++i) {
+    const double times = evenly + (1 - evenly) * worth[i] / all * double(n);  // (J2)
+    sum += times;
+    while (double(drawn.size()) + u < sum) {
+      drawn.push_back(store.places[i]);
+      drawn.back().counts /= float(times);
+    }
+  }
+  store.places = std::move(drawn);
+}
+
 namespace {
 // near: of a place, by its number.
 template <class Near>
@@ -116,7 +141,7 @@ bool choose(const LightStore& store, const Vertex& camera, double inner, int mos
   while (i + 1 < LightStore::width && !(u.y * sum < sums[i])) ++i;
   if (!(values[i] > 0)) return false;
   out.place = &store.places[i * n + block];
-  out.weight = float(double(n) / store.paths) * sum / values[i];
+  out.weight = float(double(n) / store.paths) * out.place->counts * sum / values[i];
   return true;
 }
 

@@ -101,6 +101,11 @@ void trace_pixel(const Job& job, Film& film, Sample& sample, bool splat, Scratch
   film.camera[sample.path] = sample.value * sample.filter;
 }
 
+// A number of the chunk's own in this pass, in [0, 1).
+float number_of(const Job& job, const Film& film, uint32_t chunk) {
+  return float(hash(hash(job.seed, 0x6a32), hash(film.dropped + film.passes, chunk)) >> 40) * 0x1p-24f;
+}
+
 // The samples of a chunk and, where light subpaths are stored, their light halves.
 void trace_light_halves(const Job& job, const Film& film, uint32_t chunk, Scratch& scratch) {
   const int x0 = int(chunk) % tiles_x(film) * tile, y0 = int(chunk) / tiles_x(film) * tile;
@@ -114,6 +119,7 @@ void trace_light_halves(const Job& job, const Film& film, uint32_t chunk, Scratc
   halves.photons.clear(), halves.few.clear();
   if (!job.light_half) return;
   for (auto& [sample, splat] : halves.samples) splat = trace_half(job, sample, scratch);
+  if (job.guided) prefer(halves.store, number_of(job, film, chunk));
   finish(halves.store, job.walk.inner_share);
 }
 

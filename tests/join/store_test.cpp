@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numeric>
+#include <map>
 
 #include "kit/stage.h"
 #include "path/train.h"
@@ -112,7 +112,8 @@ int expect_unbiased(const LightStore& store, const std::vector<Subpath>& cameras
   int lit = 0;
   for (size_t k = 0; k < cameras.size(); ++k) {
     const std::vector<double> g = brought(store, cameras[k], most);
-    const double expected = std::accumulate(g.begin(), g.end(), 0.0) / store.paths;
+    double expected = 0;
+    for (size_t i = 0; i < g.size(); ++i) expected += g[i] * double(store.places[i].counts) / store.paths;
     Sampler sampler = draws(k);
     double sum = 0, squares = 0;
     for (int i = 0; i < n; ++i) {
@@ -156,6 +157,37 @@ TEST(LightStore, SeveralStandForAllPlaces) {
     lit += expected > 0;
   }
   EXPECT_GT(lit, 8);
+}
+
+// What fields expect to bring much is there several times; the mean over draws is what all bring.
+TEST(LightStore, WhatIsPreferredStandsForAllPlaces) {
+  const Room room(1, true);
+  const LightStore all = room.store(64);
+  std::map<std::pair<uint32_t, int>, double> times;
+  size_t most = 0;
+  constexpr int n = 1000;
+  for (int i = 0; i < n; ++i) {
+    LightStore some = all;
+    prefer(some, (float(i) + 0.5f) / n);
+    EXPECT_NEAR(double(some.places.size()), double(all.places.size()), 1);
+    std::map<std::pair<uint32_t, int>, size_t> here;
+    for (const LightStore::Place& at : some.places) {
+      times[{at.path, at.s}] += double(at.counts) / n;
+      most = std::max(most, ++here[{at.path, at.s}]);
+    }
+  }
+  EXPECT_GT(most, 3u);
+  EXPECT_EQ(times.size(), all.places.size());
+  for (const auto& [place, count] : times) EXPECT_NEAR(count, 1, 0.01);
+}
+
+TEST(LightStore, StandsForAllPlacesOfWhichSomeCountMore) {
+  const Room room(1, true);
+  LightStore store = room.store(64);
+  prefer(store, 0.5f);
+  ASSERT_GT(std::count_if(store.places.begin(), store.places.end(), [](const auto& p) { return p.counts < 0.5f; }), 4);
+  finish(store, 1);
+  EXPECT_GT(expect_unbiased(store, room.cameras(12)), 8);
 }
 
 TEST(LightStore, PartsAddUpToTheWhole) {

@@ -47,6 +47,10 @@ struct StoreChoice {
 void clear(LightStore& store);
 /// share: of the walk.
 void add(LightStore& store, const Subpath& light, double share);
+/// Puts in place of all places as many that are drawn (systematic sampling, u in [0, 1)): half of the choice is even,
+/// half goes by what the fields expect each vertex to bring to the image. Those that are drawn count for the others.
+/// Nothing happens where fields know nothing. (J2)
+void prefer(LightStore& store, float u);
 /// Makes the blocks, when all is added. inner as in WalkOptions.
 void finish(LightStore& store, double inner);
 /// The same with what near of each place is to be.
