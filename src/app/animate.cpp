@@ -27,7 +27,7 @@ struct Arguments {
                                                                                    coherent = "on", reference, video;
   std::vector<std::string> defines;
   SequenceOptions sequence;
-  int spp = 0, max_depth = std::numeric_limits<int>::min(), threads = 0;
+  int spp = 0, max_depth = not_given, threads = 0;
   uint64_t seed = 0;
   double fps = 24;
   bool half = false, quiet = false, lenient = false;
@@ -41,15 +41,10 @@ RenderOptions render_options(const Arguments& a, const Scene& scene) {
   o.integrator = !a.integrator.empty()                   ? a.integrator
                  : is_integrator(scene.hints.integrator) ? scene.hints.integrator
                                                          : std::string("guided-bdpt");
-  if (!a.time.empty()) o.seconds = parse_duration("--time", a.time);
-  if (!a.cpu_time.empty()) o.cpu_seconds = parse_duration("--cpu-time", a.cpu_time);
-  o.spp = uint32_t(a.spp);
-  if (!is_limited(o)) o.spp = scene.hints.spp > 0 ? uint32_t(scene.hints.spp) : default_spp;
+  set_limits(a.time, a.cpu_time, a.spp, scene, o);
   o.seed = a.seed;
   o.threads = a.threads;
-  o.max_depth = a.max_depth != std::numeric_limits<int>::min() ? a.max_depth : scene.hints.max_depth;
-  if (o.max_depth < -1 || o.max_depth == 0)
-    throw Error(fmt::format("--max-depth {}: -1 for unlimited, 1 or more edges otherwise", o.max_depth));
+  set_max_depth(a.max_depth, scene, o);
   if (!is_guided(o.integrator) && (a.guide != "both" || !a.field_memory.empty()))
     throw Error(fmt::format("{}: the integrator {} learns no fields; add --integrator guided-bdpt",
                             a.guide != "both" ? "--guide" : "--field-memory", o.integrator));

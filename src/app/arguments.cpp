@@ -8,7 +8,6 @@
 #include <filesystem>
 
 #include "ajar/core/error.h"
-#include "ajar/render/options.h"
 
 namespace ajar {
 
@@ -55,6 +54,19 @@ double parse_duration(const std::string& option, const std::string& text) {
   if (!(value > 0) || factor == 0 || !std::isfinite(value))
     throw Error(fmt::format("{} {}: not a time; write 90s, 5m or 1h", option, text));
   return value * factor;
+}
+
+void set_limits(const std::string& time, const std::string& cpu_time, int spp, const Scene& scene, RenderOptions& o) {
+  if (!time.empty()) o.seconds = parse_duration("--time", time);
+  if (!cpu_time.empty()) o.cpu_seconds = parse_duration("--cpu-time", cpu_time);
+  o.spp = uint32_t(spp);
+  if (!is_limited(o)) o.spp = scene.hints.spp > 0 ? uint32_t(scene.hints.spp) : default_spp;
+}
+
+void set_max_depth(int max_depth, const Scene& scene, RenderOptions& o) {
+  o.max_depth = max_depth != not_given ? max_depth : scene.hints.max_depth;
+  if (o.max_depth < -1 || o.max_depth == 0)
+    throw Error(fmt::format("--max-depth {}: -1 for unlimited, 1 or more edges otherwise", o.max_depth));
 }
 
 bool is_integrator(const std::string& name) {

@@ -2,9 +2,11 @@
 // Leaves: what it means; Error, with the option and a right example, where it means nothing.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
+#include "ajar/render/options.h"
 #include "ajar/scene/camera.h"
 #include "ajar/scene/load.h"
 
@@ -18,6 +20,13 @@ LoadOptions load_options(const std::vector<std::string>& defines, bool lenient);
 size_t parse_bytes(const std::string& option, const std::string& text);
 /// Seconds from 90s, 5m, 1h or a bare number; option names it in messages.
 double parse_duration(const std::string& option, const std::string& text);
+/// What ends the render, as typed (empty, 0: not given), beside what options hold already: all of it counts. Without
+/// any, what the scene asks for.
+void set_limits(const std::string& time, const std::string& cpu_time, int spp, const Scene& scene,
+                RenderOptions& options);
+/// not_given: the scene's own.
+void set_max_depth(int max_depth, const Scene& scene, RenderOptions& options);
+inline constexpr int not_given = std::numeric_limits<int>::min();
 /// Whether there is an integrator of that name.
 bool is_integrator(const std::string& name);
 /// Throws unless there is.

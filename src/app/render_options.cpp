@@ -6,7 +6,6 @@
 
 #include "ajar/core/error.h"
 #include "ajar/render/plan.h"
-#include "arguments.h"
 #include "versus.h"
 
 namespace ajar {
@@ -93,16 +92,6 @@ std::vector<std::string> split(const std::string& list) {
     else
       out.back() += c;
   return out;
-}
-
-// All limits that the user gives hold; what the scene asks for is no limit where he gives one.
-void set_budget(const RenderArguments& a, const Scene& scene, RenderOptions& o) {
-  if (!a.time.empty()) o.seconds = parse_duration("--time", a.time);
-  if (!a.cpu_time.empty()) o.cpu_seconds = parse_duration("--cpu-time", a.cpu_time);
-  if (a.noise) o.noise = parse_noise(*a.noise);
-  o.spp = uint32_t(a.spp);
-  if (is_limited(o)) return;
-  o.spp = scene.hints.spp > 0 ? uint32_t(scene.hints.spp) : default_spp;
 }
 
 }  // namespace
@@ -201,12 +190,11 @@ RenderOptions render_options(const RenderArguments& a, Scene& scene, bool planne
   else if (!scene.hints.integrator.empty())
     scene.notes.push_back(fmt::format("{}: integrator {} is not in this version; {} is used", a.scene,
                                       scene.hints.integrator, o.integrator));
-  set_budget(a, scene, o);
+  if (a.noise) o.noise = parse_noise(*a.noise);
+  set_limits(a.time, a.cpu_time, a.spp, scene, o);
   o.seed = a.seed;
   o.threads = a.threads;
-  o.max_depth = a.max_depth != std::numeric_limits<int>::min() ? a.max_depth : scene.hints.max_depth;
-  if (o.max_depth < -1 || o.max_depth == 0)
-    throw Error(fmt::format("--max-depth {}: -1 for unlimited, 1 or more edges otherwise", o.max_depth));
+  set_max_depth(a.max_depth, scene, o);
   o.roulette_depth = a.roulette_depth;
   o.heuristic = a.heuristic == "balance" ? Heuristic::balance : Heuristic::power;
   o.sampler = a.sampler == "independent" ? SamplerKind::independent : SamplerKind::sobol;

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "ajar/render/options.h"
 #include "ajar/scene/scene.h"
+#include "arguments.h"
 
 namespace ajar {
 
@@ -19,7 +19,7 @@ struct RenderArguments {
   std::optional<std::string> noise;
   std::optional<double> at;
   std::vector<std::string> defines, features;
-  int spp = 0, max_depth = std::numeric_limits<int>::min(), threads = 0, roulette_depth = 5;
+  int spp = 0, max_depth = not_given, threads = 0, roulette_depth = 5;
   uint64_t seed = 0;
   int train = 0;
   std::optional<float> merge_radius;

@@ -41,6 +41,14 @@ void set_chances(const LightTree& tree, const Guide& guide, const Vec3& p, Chanc
   if (!(c.total < infinity)) c.total = 0;
 }
 
+// Whether a light is asked at all; u becomes uniform again.
+bool is_asked(float asks, float& u) {
+  if (!(asks < 1)) return true;
+  if (u >= asks) return false;
+  u = std::min(u / asks, one_minus_epsilon);
+  return true;
+}
+
 uint32_t draw(const Chances& c, float& u) {
   float at = u * c.total;
   uint32_t i = 0, last = 0;
@@ -58,12 +66,11 @@ uint32_t draw(const Chances& c, float& u) {
 bool choose_piece(const Scene& scene, const Guide& guide, const Chances& c, float u, uint32_t& place, float& pdf) {
   const LightTree& tree = scene.light_tree;
   place = none, pdf = c.asks;
-  if (tree.nodes.empty() || (c.asks < 1 && u >= c.asks)) return false;
+  if (tree.nodes.empty() || !is_asked(c.asks, u)) return false;
   if (tree.pieces.size() == 1) {
     place = 0;
     return true;
   }
-  if (c.asks < 1) u = std::min(u / c.asks, one_minus_epsilon);
   uint32_t node = 0;
   float below;
   if (is_cut(c)) {
@@ -92,10 +99,7 @@ float piece_pdf(const Scene& scene, const Guide& guide, const Chances& c, uint32
 bool sample_plain(const Scene& scene, const Guide& guide, const LightCut* cut, const Vec3& p, float u,
                   const Vec2& u_point, DirectSample& out) {
   const float asks = cut ? cut->asks : 1;
-  if (asks < 1) {
-    if (u >= asks) return false;
-    u = std::min(u / asks, one_minus_epsilon);
-  }
+  if (!is_asked(asks, u)) return false;
   float pick;
   const SkyLight& light = choose_of_sky(scene.light_tree, receiver_at(guide, p), u, pick);
   if (!sample_direct(scene, light.light, p, u_point, out)) return false;
