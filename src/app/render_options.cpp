@@ -138,9 +138,7 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
   c->add_option("--resume", a->resume, "checkpoint to go on from");
   c->add_option("--guide", a->guide, "which subpaths the learned fields guide: both, camera or light")
       ->check(CLI::IsMember({"both", "camera", "light"}));
-  c->add_option("--field-memory", a->field_memory,
-                "memory that learned fields may take, beside up to 3 MB for which regions see each other: 512K, 8M "
-                "(default), 1G");
+  c->add_option("--field-memory", a->field_memory, "memory that all that is learned may take: 512K, 8M (default), 1G");
   c->add_option("--field-structure", a->field_structure, "of learned fields: adaptive (default), grid or probes")
       ->check(CLI::IsMember(listed(structure_names)));
   c->add_option("--field-rule", a->field_rule, "how they are learned: expected (default), max or return")

@@ -79,7 +79,7 @@ Vec3 sample(const Fields& fields, const Field& field, uint32_t cell, const Vec3&
 
 size_t bytes(const Fields& f) {
   const auto of = [](const Field& x) {
-    return x.cells.size() * sizeof(FieldCell) + x.nodes.size() * (sizeof(StrataNode) + 32 * sizeof(float));
+    return x.cells.size() * sizeof(FieldCell) + x.nodes.size() * (sizeof(StrataNode) + 32 * sizeof(Short));
   };
   return f.table.slots.size() * sizeof(CellTable::Slot) + f.table.probes.size() * sizeof(Probe) +
          f.cells.size() * sizeof(Cell) + bytes(f.views) + of(f.q) + of(f.w) + of(f.disk) + bytes(f.lights) +

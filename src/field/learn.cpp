@@ -9,6 +9,13 @@
 namespace ajar {
 namespace {
 
+// Share of the memory up to which cells are added, and strata divided: cells are few, their strata go on growing, and a
+// lesson does not know how much it is about to add.
+constexpr double for_cells = 0.4, for_strata = 0.9;
+bool is_left(const Fields& fields, double share, const LearnOptions& options) {
+  return double(bytes(fields)) < share * double(options.memory);
+}
+
 struct Work {
   Structure structure = Structure::adaptive;
   Rule rule = Rule::expected;
@@ -16,6 +23,7 @@ struct Work {
   const Field* field = nullptr;
   const Tallies* tallies = nullptr;
   const LearnOptions* options = nullptr;
+  bool divides = true;  // strata that are heavy enough
   Tree tree;
 };
 
@@ -42,7 +50,7 @@ FieldCell learn_cell(Work& w, uint32_t cell, double area, double paths, Trees& o
   const float floor = 0.03f * bare / pi;
   const float total = weigh(w.tree, w.structure, floor);
   if (total > 0 && w.structure == Structure::adaptive) {
-    reshape(w.tree, total, *w.options);
+    reshape(w.tree, total, *w.options, w.divides);
     weigh(w.tree, w.structure, floor);
   }
   next.root = append(out, w.tree, w.structure);
@@ -63,12 +71,13 @@ Field learn_field(const Fields& fields, const Field& field, Structure structure,
                   const LearnOptions& options) {
   constexpr uint32_t block = 64;
   const uint32_t n = uint32_t(field.cells.size()), blocks = (n + block - 1) / block;
+  const bool divides = is_left(fields, for_strata, options);
   std::vector<Trees> trees(blocks);
   Field next;
   next.unit = field.unit;
   next.cells.resize(n);
   parallel_for(blocks, [&](uint32_t b) {
-    Work work{structure, fields.rule, &fields, &field, &tallies, &options, {}};
+    Work work{structure, fields.rule, &fields, &field, &tallies, &options, divides, {}};
     for (uint32_t c = b * block; c < std::min(n, (b + 1) * block); ++c) {
       const bool sized = &field != &fields.disk;
       const double edge = sized ? double(fields.table.edge(level_of(fields.cells[c].key))) : 1;
@@ -89,8 +98,9 @@ Field learn_field(const Fields& fields, const Field& field, Structure structure,
 void add_cells(Fields& fields, const Sightings& sightings, const LearnOptions& options) {
   std::vector<std::pair<CellKey, Sighting>> sorted(sightings.begin(), sightings.end());
   std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  const double share = fields.structure == Structure::adaptive ? for_cells : 1;
   for (const auto& [key, seen] : sorted) {
-    if (bytes(fields) > options.memory) return;
+    if (!is_left(fields, share, options)) return;
     if (seen.count < 4) continue;
     const CellKey above = parent_of(key);
     const uint32_t parent = above ? cell_of(fields.table, above) : none;
@@ -111,7 +121,7 @@ void add_cells(Fields& fields, const Sightings& sightings, const LearnOptions& o
 
 // Cells of patches that the memory has room for, with their places in the hash table.
 double affordable_cells(size_t memory) {
-  constexpr double strata = (1 + zones) * (sizeof(StrataNode) + 32 * sizeof(float));
+  constexpr double strata = (1 + zones) * (sizeof(StrataNode) + 32 * sizeof(Short));
   return double(memory) /
          (2 * (strata + sizeof(FieldCell)) + sizeof(Cell) + 3 * sizeof(CellTable::Slot) + sizeof(Probe));
 }
@@ -137,7 +147,9 @@ void doubt_cell(Field& field, FieldCell& cell, float kept, const LearnOptions& o
   for (size_t k = 0; k < order.size(); ++k)
     for (int i = 0; i < 16; ++i) {
       if (field.nodes[order[k]].is_divided(i)) order.push_back(field.nodes[order[k]].child(i));
-      weight += field.weight[16 * size_t(order[k]) + size_t(i)] *= kept;
+      Short& of_stratum = field.weight[16 * size_t(order[k]) + size_t(i)];
+      of_stratum = kept * of_stratum;
+      weight += of_stratum;
     }
   if (cell.mix > 0) cell.mix = mix_for(options, weight);
 }

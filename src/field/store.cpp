@@ -11,7 +11,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind fields_kind = {"AJARfd06", "file of fields", "make one with --save-fields",
+constexpr FileKind fields_kind = {"AJARfd07", "file of fields", "make one with --save-fields",
                                   "learn the fields again with --save-fields"};
 
 bool is_amount(float x) { return x >= 0 && x < infinity; }
@@ -40,8 +40,8 @@ void write(Writer& w, const Field& f) {
   for (const FieldCell& c : f.cells) cell_members(w, c);
   w.value(uint64_t(f.nodes.size()));
   for (const StrataNode& n : f.nodes) w.value(n.before), w.value(n.divided), w.value(n.children);
-  w.bytes(f.mean.data(), f.mean.size() * sizeof(float));
-  w.bytes(f.weight.data(), f.weight.size() * sizeof(float));
+  w.bytes(f.mean.data(), f.mean.size() * sizeof(Short));
+  w.bytes(f.weight.data(), f.weight.size() * sizeof(Short));
 }
 
 // first: the first stratum in use.
@@ -93,15 +93,15 @@ void read(Reader& r, Structure structure, size_t cells, Field& f) {
     cell_members(r, c);
     r.require(is_sound(c));
   }
-  f.nodes.resize(r.count(sizeof(StrataNode) - 2 + 32 * sizeof(float)));
+  f.nodes.resize(r.count(sizeof(StrataNode) - 2 + 32 * sizeof(Short)));
   for (StrataNode& n : f.nodes) {
     r.value(n.before), r.value(n.divided), r.value(n.children);
     r.require(structure != Structure::adaptive || is_sound(n, 0));
   }
   f.mean.resize(16 * f.nodes.size());
   f.weight.resize(16 * f.nodes.size());
-  r.bytes(f.mean.data(), f.mean.size() * sizeof(float));
-  r.bytes(f.weight.data(), f.weight.size() * sizeof(float));
+  r.bytes(f.mean.data(), f.mean.size() * sizeof(Short));
+  r.bytes(f.weight.data(), f.weight.size() * sizeof(Short));
   r.require(std::all_of(f.mean.begin(), f.mean.end(), is_amount) &&
             std::all_of(f.weight.begin(), f.weight.end(), is_amount));
   std::vector<bool> claimed(f.nodes.size());
@@ -113,7 +113,7 @@ void read(Reader& r, Structure structure, size_t cells, Field& f) {
 void read(Reader& r, uint32_t regions, Views& v) {
   r.value(v.regions);
   r.array(v.tried), r.array(v.seen);
-  const size_t size = size_t(v.regions) * v.regions;
+  const size_t size = pair_count(v.regions);
   r.require(v.regions <= std::min(regions, most_regions) && v.tried.size() == size && v.seen.size() == size);
   for (size_t i = 0; i < size; ++i) r.require(is_amount(v.tried[i]) && v.seen[i] >= 0 && v.seen[i] <= v.tried[i]);
   v = learn_views(v, start_tallies(v), v.regions, 1);

@@ -57,13 +57,13 @@ float records_in(float weight, float share, int level, float mix) {
   return weight * (1 - mix + mix * share / even);
 }
 
-void reshape(Tree& tree, int32_t at, int level, float total, const LearnOptions& options) {
+void reshape(Tree& tree, int32_t at, int level, float total, const LearnOptions& options, bool divides) {
   for (int i = 0; i < 16; ++i) {
     const float share = tree[size_t(at)].mass[i] / total;
     const int32_t child = tree[size_t(at)].child[i];
     if (child >= 0) {
       if (share > 0.4f * options.divide_stratum) {
-        reshape(tree, child, level + 1, total, options);
+        reshape(tree, child, level + 1, total, options, divides);
         continue;
       }
       float mean = 0, weight = 0;
@@ -75,7 +75,7 @@ void reshape(Tree& tree, int32_t at, int level, float total, const LearnOptions&
       if (!leaf) continue;
       TreeNode& mine = tree[size_t(at)];
       mine.child[i] = -1, mine.mean[i] = mean, mine.weight[i] = weight;
-    } else if (share > options.divide_stratum && level + 1 < most_levels &&
+    } else if (divides && share > options.divide_stratum && level + 1 < most_levels &&
                records_in(tree[size_t(at)].weight[i], share, level, options.mix) >= least_records) {
       const int32_t fresh = int32_t(tree.size());
       tree.emplace_back();
@@ -143,7 +143,7 @@ int32_t take(const Field& field, const Tallies& tallies, float forget, uint32_t 
     TreeNode& mine = tree[size_t(at)];
     mine.child[i] = -1;
     mine.mean[i] = mean;
-    mine.weight[i] = fresh > 0 ? sum : field.weight[k];
+    mine.weight[i] = fresh > 0 ? sum : float(field.weight[k]);
   }
   return at;
 }
@@ -168,7 +168,9 @@ float evidence(const Tree& tree) {
   return sum;
 }
 
-void reshape(Tree& tree, float total, const LearnOptions& options) { reshape(tree, 0, 0, total, options); }
+void reshape(Tree& tree, float total, const LearnOptions& options, bool divides) {
+  reshape(tree, 0, 0, total, options, divides);
+}
 
 uint32_t append(Trees& out, const Tree& tree, Structure structure) {
   const uint32_t root = uint32_t(out.nodes.size());

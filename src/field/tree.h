@@ -20,13 +20,13 @@ float weigh(Tree& tree, Structure structure, float floor);
 // Largest mean of all strata; sum of their evidence.
 float most_radiance(const Tree& tree);
 float evidence(const Tree& tree);
-// Divides heavy strata, joins light ones. total: what weigh returned.
-void reshape(Tree& tree, float total, const LearnOptions& options);
+// Divides heavy strata, if any are to be divided, and joins light ones. total: what weigh returned.
+void reshape(Tree& tree, float total, const LearnOptions& options, bool divides);
 
 // Finished trees. The children of a node follow each other.
 struct Trees {
   std::vector<StrataNode> nodes;
-  std::vector<float> mean, weight;
+  std::vector<Short> mean, weight;
 };
 // Returns the root.
 uint32_t append(Trees& out, const Tree& tree, Structure structure);

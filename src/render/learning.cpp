@@ -33,10 +33,10 @@ void go_on_from(StoredFields stored, const LearnOptions& options, Learning& l, F
   l.fields.rule = options.rule;
   Field& w = l.fields.w;
   w.unit *= scale;
-  for (float& m : w.mean) m *= float(scale);
+  for (Short& m : w.mean) m = float(scale) * m;
   for (FieldCell& c : w.cells) c.direct *= float(scale), c.total *= float(scale);
   l.fields.starts.unit *= scale, l.fields.disk.unit *= scale;
-  for (float& m : l.fields.disk.mean) m *= float(scale);
+  for (Short& m : l.fields.disk.mean) m = float(scale) * m;
   restrict_to(l.fields, options.guided);
   l.training = start_training(l.fields);
   l.first = film.dropped = (stored.passes + 1) / 2 * 2;

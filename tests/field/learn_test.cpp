@@ -58,6 +58,9 @@ LearnOptions whole_strata() {
 float mean_of(const Field& f, int stratum) { return f.mean[16 * size_t(f.cells[0].root) + size_t(stratum)]; }
 float weight_of(const Field& f, int stratum) { return f.weight[16 * size_t(f.cells[0].root) + size_t(stratum)]; }
 
+// What 16 bits keep of it.
+float kept(float x) { return Short(x); }
+
 template <class T>
 bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
@@ -94,7 +97,7 @@ TEST(Learn, EvidenceMovesItsStratumAlone) {
     // Records of one lesson are averaged by weight: (1 * 7 + 3 * 1) / 4 = 2.5; 4 + (2.5 - 4) * 4 / (1 + 4).
     Lesson third(b, side);
     third.add(towards(5, {0.1f, 0.9f}), 7, 1), third.add(towards(5, {0.9f, 0.1f}), 1, 3);
-    EXPECT_FLOAT_EQ(mean_of(third.learned(whole_strata()).of(side), 5), 2.8f);
+    EXPECT_NEAR(mean_of(third.learned(whole_strata()).of(side), 5), 2.8f, 2.8f / 512);
     EXPECT_EQ(third.learned(whole_strata()).generation, blank.generation + 3);
   }
 }
@@ -159,17 +162,21 @@ TEST(Learn, HeavyStrataDivideAndLightOnesJoin) {
   ASSERT_EQ(a.q.nodes.size(), 2u);
   for (size_t i = 0; i < 16; ++i) {
     EXPECT_FLOAT_EQ(a.q.mean[16 * root.child(5) + i], 1);
-    EXPECT_FLOAT_EQ(a.q.weight[16 * root.child(5) + i], 0.1f) << "a tenth of the whole's evidence";
+    EXPECT_EQ(a.q.weight[16 * root.child(5) + i], kept(0.1f)) << "a tenth of the whole's evidence";
   }
   EXPECT_FLOAT_EQ(a.q.cells[0].mix, 0.8f * 31 / (31 + 32)) << "dividing costs no trust";
   EXPECT_EQ(a.w.nodes.size(), 1u);
+
+  LearnOptions tight;
+  tight.memory = bytes(blank);
+  EXPECT_EQ(first.learned(tight).q.nodes.size(), 1u) << "no memory is left";
 
   // Evidence goes to the part that it is for, and counts ten times what the part began with.
   Lesson part(a);
   part.add(towards(5, {0.9f, 0.9f}), 4, 0.5f);
   const Fields p = part.learned(whole_strata());
   const uint32_t child = p.q.nodes[p.q.cells[0].root].child(5);
-  EXPECT_FLOAT_EQ(p.q.mean[16 * child + 15], 1 + 3 * 0.5f / 0.55f);
+  EXPECT_EQ(p.q.mean[16 * child + 15], kept(1 + 3 * 0.5f / 0.55f));
   EXPECT_FLOAT_EQ(p.q.mean[16 * child + 14], 1);
 
   Lesson second(a);
@@ -179,8 +186,8 @@ TEST(Learn, HeavyStrataDivideAndLightOnesJoin) {
   const Fields b = second.learned();
   const StrataNode& joined = b.q.nodes[b.q.cells[0].root];
   EXPECT_FALSE(joined.is_divided(5));
-  EXPECT_NEAR(mean_of(b.q, 5), 0.05f / 32.05f, 1e-7f);
-  EXPECT_FLOAT_EQ(weight_of(b.q, 5), 16 * 32.05f);
+  EXPECT_NEAR(mean_of(b.q, 5), 0.05f / 32.05f, 1e-5f);
+  EXPECT_EQ(weight_of(b.q, 5), kept(16 * 32.05f));
 }
 
 // Few records are made in narrow strata, and each weighs little: those that hold much of the field need less weight.

@@ -90,7 +90,7 @@ TEST_P(StoredStructures, FieldsComeBack) {
   EXPECT_EQ(bytes(a), bytes(b));
   EXPECT_EQ(a.regions, b.regions);
   EXPECT_GT(a.views.regions, 4u);
-  EXPECT_LT(*std::min_element(a.views.chance.begin(), a.views.chance.end()), 0.8f) << "regions know something";
+  EXPECT_LT(*std::min_element(a.views.chance.begin(), a.views.chance.end()), 204) << "regions know something";
   EXPECT_EQ(a.views.regions, b.views.regions);
   EXPECT_EQ(a.views.tried, b.views.tried);
   EXPECT_EQ(a.views.seen, b.views.seen);
@@ -212,8 +212,8 @@ TEST_F(Store, WhatCannotBeIsAnError) {
       {"frame of NaN", [](Fields& f, uint32_t i, uint32_t) { f.cells[i].frame.t = Vec3(std::nanf("")); }},
       {"mix of 1", [](Fields& f, uint32_t i, uint32_t) { f.q.cells[i].mix = 1; }},
       {"negative mix", [](Fields& f, uint32_t i, uint32_t) { f.w.cells[i].mix = -0.1f; }},
-      {"negative mean", [](Fields& f, uint32_t, uint32_t p) { f.q.mean[16 * p] = -1; }},
-      {"weight of NaN", [](Fields& f, uint32_t, uint32_t p) { f.w.weight[16 * p] = std::nanf(""); }},
+      {"infinite mean", [](Fields& f, uint32_t, uint32_t p) { f.q.mean[16 * p].bits = 0xff00; }},
+      {"weight of NaN", [](Fields& f, uint32_t, uint32_t p) { f.w.weight[16 * p].bits = 0xffff; }},
       {"infinite total", [](Fields& f, uint32_t i, uint32_t) { f.q.cells[i].total = infinity; }},
       {"unit of 0", [](Fields& f, uint32_t, uint32_t) { f.q.unit = 0; }},
       {"no width", [](Fields& f, uint32_t, uint32_t) { f.table.width = 0; }},

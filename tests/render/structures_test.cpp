@@ -86,6 +86,7 @@ double mean_of_strata(const Fields& fields, Side side) {
 Fields learned(const Scene& scene, Structure structure, Rule rule) {
   RenderOptions o = statistical("guided-bdpt");
   o.spp = 32, o.learn.structure = structure, o.learn.rule = rule;
+  o.learn.memory = size_t(5) << 20;  // so few cells that all of them are visited
   return rendered(scene, Accel(scene), o).learning.fields;
 }
 

@@ -28,8 +28,8 @@ struct FieldCell {
 struct Field {
   std::vector<FieldCell> cells;
   std::vector<StrataNode> nodes;
-  std::vector<float> mean;    ///< 16 per node: what the stratum's field is
-  std::vector<float> weight;  ///< 16 per node: how much evidence stands behind it, in records of typical weight
+  std::vector<Short> mean;    ///< 16 per node: what the stratum's field is
+  std::vector<Short> weight;  ///< 16 per node: how much evidence stands behind it, in records of typical weight
   double unit = 1;            ///< a typical value, from the scene's power and size
 };
 

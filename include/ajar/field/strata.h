@@ -3,6 +3,7 @@
 // sample and density.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <vector>
 
@@ -22,6 +23,17 @@ struct StrataNode {
   bool is_divided(int i) const { return (divided >> i) & 1; }
   /// Share of stratum i, in steps of 2^-16.
   uint32_t steps(int i) const { return (i == 15 ? 65536u : before[i + 1]) - before[i]; }
+};
+
+/// A number that is not negative in 16 bits, eight of them for the exponent: rounding errs by 2^-9 of it at most. What
+/// is too large becomes the largest.
+struct Short {
+  uint16_t bits = 0;
+
+  Short() = default;
+  Short(float x) : bits(uint16_t(std::min((std::bit_cast<uint32_t>(std::max(x, 0.0f)) + 0x4000u) >> 15, most))) {}
+  operator float() const { return std::bit_cast<float>(uint32_t(bits) << 15); }
+  static constexpr uint32_t most = 0xfeff;
 };
 
 /// Levels of nodes at most: 4^5 = 1024 strata across the hemisphere.

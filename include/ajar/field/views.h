@@ -3,30 +3,37 @@
 // unbiased whatever it says: no pair is ruled out.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace ajar {
 
-/// Regions are the cells of the top level. Matrices of regions x regions, symmetric.
+/// Regions are the cells of the top level. Lists hold a value for each pair of them, by pair_index.
 struct Views {
   uint32_t regions = 0;
   std::vector<float> tried, seen;  ///< joins so far, older ones counting less, and those of them that were free
-  std::vector<float> chance;       ///< square root of the probability that a join is free: what choices are made by
+  std::vector<uint8_t> chance;     ///< square root of the probability that a join is free, in steps of 1/255: what
+                                   ///< choices are made by
 };
 
-/// Joins between regions since the last lesson: tried, free, in turns.
+/// Joins between regions since the last lesson: tried, free, in turns, for each pair.
 struct ViewTallies {
   std::vector<uint32_t> counts;
 };
 
 inline constexpr uint32_t most_regions = 512, no_region = ~0u;
 
+/// Pairs of so many regions, those of a region with itself too.
+inline std::size_t pair_count(uint32_t regions) { return std::size_t(regions) * (regions + 1) / 2; }
+/// Either way round; the same however many regions there are.
+inline std::size_t pair_index(uint32_t a, uint32_t b) { return pair_count(std::max(a, b)) + std::min(a, b); }
+
 inline float chance(const Views& v, uint32_t a, uint32_t b) {
-  return a < v.regions && b < v.regions ? v.chance[std::size_t(a) * v.regions + b] : 1;
+  return a < v.regions && b < v.regions ? float(v.chance[pair_index(a, b)]) * (1 / 255.0f) : 1;
 }
-inline std::size_t bytes(const Views& v) { return 3 * v.tried.size() * sizeof(float); }
+inline std::size_t bytes(const Views& v) { return v.tried.size() * (2 * sizeof(float) + sizeof(uint8_t)); }
 ViewTallies start_tallies(const Views& views);
 void record_join(const Views& views, ViewTallies& tallies, uint32_t a, uint32_t b, bool free);
 /// The next views, of so many regions: of older evidence the share kept counts.
