@@ -62,7 +62,7 @@ TEST(Furnace, Unlimited) {
   const Rgb radiance(1, 2, 0.5f), a(0.5f, 0.3f, 0.75f);
   for (const Oven oven : {Oven::cube, Oven::sphere, Oven::mesh})
     for (const char* integrator : {"path", "bdpt", "light"})
-      expect_everywhere(furnace(oven, radiance, a), integrator, -1, radiance / (Rgb(1) - a));
+      expect_everywhere(furnace(oven, radiance, a), integrator, -1, radiance / (Rgb(1) - a), {.passes = 24});
 }
 
 // Each edge more adds one power of the reflectance: this fixes how depth is counted.
@@ -201,8 +201,8 @@ TEST(Mirrored, SceneGivesTheMirroredImage) {
   for (const Material& material : {Material{}, rough})
     for (const char* integrator : {"path", "light"}) {
       const RenderOptions options = statistical(integrator);
-      expect_same(measure(handed(false, material), options), mirrored(measure(handed(true, material), options)),
-                  integrator);
+      const auto image = [&](bool mirror) { return measure(handed(mirror, material), options, {.passes = 24}); };
+      expect_same(image(false), mirrored(image(true)), integrator);
     }
 }
 

@@ -50,7 +50,7 @@ double sum_of(const Picture& p) {
 class Size : public testing::TestWithParam<float> {};
 TEST_P(Size, DoesNotMatter) {
   for (const char* integrator : {"path", "bdpt", "guided-bdpt"}) {
-    const Plan plan{.batches = 16, .passes = 30};
+    const Plan plan{.batches = 16, .passes = 15};
     const RenderOptions options = statistical(integrator);
     expect_same(measure(scaled(1), options, plan), measure(scaled(GetParam()), options, plan), integrator);
   }

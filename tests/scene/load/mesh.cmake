@@ -4,6 +4,6 @@ ajar_test(mesh unit FILES mesh_obj_test.cpp mesh_ply_test.cpp mesh_serialized_te
 target_include_directories(test_mesh PRIVATE ${PROJECT_SOURCE_DIR}/src)
 target_link_libraries(test_mesh PRIVATE ZLIB::ZLIB)
 
-ajar_fuzz(mesh fuzz_mesh.cpp ${CMAKE_CURRENT_SOURCE_DIR}/corpus/mesh 2000 USES ajar_scene)
+ajar_fuzz(mesh fuzz_mesh.cpp ${CMAKE_CURRENT_SOURCE_DIR}/corpus/mesh 200 USES ajar_scene)
 target_include_directories(fuzz_mesh PRIVATE ${PROJECT_SOURCE_DIR}/src)
 target_link_libraries(fuzz_mesh PRIVATE ZLIB::ZLIB)
