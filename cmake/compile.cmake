@@ -34,15 +34,14 @@ if(AJAR_GOLD AND NOT AJAR_LTO)
   target_link_options(ajar_options INTERFACE -fuse-ld=gold)
 endif()
 
-# ajar_precompile(TARGET LIKE HEADERS...): with AJAR_PCH, the headers of others that most files read, and these, are
-# compiled once for TARGET; or TARGET takes what was compiled for LIKE. None of Ajar's own: a change of one compiles what
-# includes it and no more.
-function(ajar_precompile target like)
-  if(AJAR_PCH AND target STREQUAL like)
+# With AJAR_PCH, the headers of others that most files of rooms read are compiled once. None of Ajar's own: a change of one
+# compiles what includes it and no more.
+function(ajar_precompile target)
+  if(AJAR_PCH AND target STREQUAL ajar_core)
     target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <filesystem> <fstream> <functional> <map> <memory>
-                              <optional> <span> <string> <vector> <fmt/format.h> <glm/glm.hpp> ${ARGN})
+                              <optional> <span> <string> <vector> <fmt/format.h> <glm/glm.hpp>)
   elseif(AJAR_PCH)
-    target_precompile_headers(${target} REUSE_FROM ${like})
+    target_precompile_headers(${target} REUSE_FROM ajar_core)
   endif()
 endfunction()
 
@@ -58,7 +57,7 @@ function(ajar_room name)
                              $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(ajar_${name} PRIVATE $<BUILD_INTERFACE:ajar_options> fmt::fmt)
   target_compile_features(ajar_${name} PUBLIC cxx_std_20)
-  ajar_precompile(ajar_${name} ajar_core)
+  ajar_precompile(ajar_${name})
   foreach(use ${ROOM_USES})
     target_link_libraries(ajar_${name} PUBLIC ajar_${use})
   endforeach()
