@@ -155,6 +155,10 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
       ->check(CLI::IsMember(listed(light_choice_names)));
   c->add_option("--merge-radius", a->merge_radius,
                 "of vcm, guided-vcm and photon in the first pass, in pixels (default 5); it shrinks; 0: no merging");
+  c->add_option(
+       "--final-gather", a->final_gather,
+       "of photon: rays from the first surface that bring it indirect light, in place of the light vertices there")
+      ->check(CLI::Range(1, 1024));
   c->add_flag("--no-next-event", a->no_next_event, "lights are found by hitting them alone: path and guided-path");
   c->add_option("--save-fields", a->save_fields, "file to save the learned fields to");
   c->add_option("--load-fields", a->load_fields, "fields to start from, saved from a render of the same scene");
@@ -199,6 +203,9 @@ RenderOptions render_options(const RenderArguments& a, Scene& scene, bool planne
   o.techniques = !a.techniques.empty();
   o.next_event = !a.no_next_event;
   if (a.merge_radius) o.merge_radius = parse_merge_radius(*a.merge_radius, o.integrator);
+  o.final_gather = a.final_gather;
+  if (o.final_gather > 0 && o.integrator != "photon")
+    throw Error(fmt::format("--final-gather: {} has no photon map to gather from; take photon", o.integrator));
   check_next_event(o, scene);
   if (a.plan == "all") o.integrator = "guided-bdpt";
   o.learn = learn_options(a, o.integrator, planned || is_guided(o.integrator));

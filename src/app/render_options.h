@@ -23,6 +23,7 @@ struct RenderArguments {
   uint64_t seed = 0;
   int train = 0;
   std::optional<float> merge_radius;
+  int final_gather = 0;
   bool no_next_event = false, png = false, half = false, quiet = false, lenient = false;
 };
 

@@ -46,8 +46,10 @@ constexpr uint32_t most_ranges = 64;
 }  // namespace
 
 void add_photons(Photons& photons, const Subpath& light, Heuristic h, double inner, double share) {
+  bool straight = true;
   for (int s = 2; s <= light.n; ++s) {
     const Vertex& v = light[s - 1];
+    straight = straight && (s == 2 || light[s - 2].delta);
     if (!connectable(v.guide) || is_black(v.beta) || !(v.merge > 0)) continue;
     const Vertex& before = light[s - 2];
     Shares shares;
@@ -59,6 +61,7 @@ void add_photons(Photons& photons, const Subpath& light, Heuristic h, double inn
     p.wi = v.guide.wo, p.beta = v.beta;
     p.fixed = float(std::min(side.fixed, 1e37)), p.slope = float(std::min(side.slope, 1e37));
     p.n = glm::dot(v.ng, v.guide.wo) < 0 ? -v.ng : v.ng;
+    p.straight = straight;
   }
 }
 

@@ -104,7 +104,7 @@ void trace_light_subpath(Work& work) {
     if (light.n == (hit ? 2 : 1)) teach_start(work, light, walk);
     if (!hit) return;
     work.light_share = walk.first_share;
-    if (!connectable(light[light.n - 1].guide)) continue;
+    if (job.merges_alone || !connectable(light[light.n - 1].guide)) continue;
     Candidate c;
     const bool seen =
         join_camera(*job.scene, work.sample.lens, light, light.n, work.light_share, job.walk.light_paths, c) &&
@@ -219,7 +219,8 @@ void trace_light_half(const Job& job, Sample& sample, Scratch& scratch) {
   trace_light_subpath(work);
   Halves& halves = *scratch.halves;
   const bool merges = job.walk.merging.paths > 0;
-  if (!merges || is_one_in(stored_share, sample)) add(halves.store, scratch.light, work.light_share);
+  if (!job.merges_alone && (!merges || is_one_in(stored_share, sample)))
+    add(halves.store, scratch.light, work.light_share);
   if (merges) keep_photons(job, sample, work.light_share, scratch);
   charge(scratch, scratch.ledger->light_ticks);
   if (!sample.teaches) return;

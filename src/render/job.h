@@ -47,6 +47,7 @@ struct Job {
   const PhotonMap* photons = nullptr;  ///< light vertices to merge with: of all light subpaths of the batch, and of
                                        ///< one in inner_photons; null: none
   bool merges_alone = false;           ///< nothing but merges brings light, so they need no weights
+  int final_gather = 0;                ///< of photon, see RenderOptions
   const Vpls* vpls = nullptr;
   bool guided = false;                 ///< fields guide subpaths, and learn from them; else lights alone are learned
   const Learning* learning = nullptr;  ///< null: nothing is learned
@@ -116,12 +117,10 @@ double density_of_lights(const Job& job, const Vec3& p, const Vec3& ng, const Ve
 void measure_lights(const Job&, std::vector<Scratch>&, Vpls&);
 /// Traces the light subpaths of a pass and keeps its lights.
 void place_vpls(const Job&, uint32_t pass, std::vector<Scratch>&, Vpls&);
-/// The first half of guided-bdpt: the light subpath of one sample, put into the chunk's store. The second is
-/// trace_bdpt.
+/// The light subpath of one sample, put into the chunk's store and among what is merged. trace_bdpt is the second half,
+/// or trace_photon, which joins nothing.
 void trace_light_half(const Job&, Sample&, Scratch&);
 
-/// The light half of photon.
-void trace_photons(const Job&, Sample&, Scratch&);
 void trace_photon(const Job&, Sample&, Scratch&);
 
 /// Beyond the first vertex at which a camera subpath is merged, it is merged with one light subpath in so many: those

@@ -1,5 +1,7 @@
 // Merging: camera vertices take the light that arrives at light vertices near them (Georgiev et al. 2012).
 
+#include <optional>
+
 #include "job.h"
 
 namespace ajar {
@@ -36,14 +38,13 @@ Disc disc_about(const Job& job, const Vertex& v, float radius) {
   return {v, frame, r, std::min(std::max(plane_share * r, 4 * v.error), 0.5f * above.t)};
 }
 
-// Whether what arrives at the photon would arrive at the camera vertex: surfaces that face other ways, and those that
-// lie in front of it or behind, are others.
-bool same_surface(const Disc& disc, const Photon& p) {
-  const Vertex& v = disc.v;
-  if (!(length2(p.p - v.p) < sqr(disc.radius))) return false;
+// Whether what arrives at the photon would arrive at the camera vertex, as far as a disc of this radius reaches:
+// surfaces that face other ways, and those that lie in front of it or behind, are others.
+bool same_surface(const Vertex& v, float radius, const Photon& p) {
+  if (!(length2(p.p - v.p) < sqr(radius))) return false;
   const float facing = glm::dot(v.guide.ng, p.n);
   if ((v.guide.bsdf.opaque ? facing : std::abs(facing)) < facing_share) return false;
-  return std::abs(glm::dot(v.guide.ng, p.p - v.p)) < plane_share * disc.radius;
+  return std::abs(glm::dot(v.guide.ng, p.p - v.p)) < plane_share * radius;
 }
 
 // Whether nothing stands between the vertex and a place on its disc. What is behind a wall that stands on the disc is
@@ -131,14 +132,17 @@ void join_merged(const Job& job, Sample& sample, Scratch& scratch) {
   const MergeSide side = camera_side(job, camera);
   const float radius = merge_radius(job.walk.merging, v.p), full = merge_density(job.walk.merging, v.p);
   const bool inner = v.merge < full;
-  const Disc disc = disc_about(job, v, radius);
+  std::optional<Disc> disc;  // costs a ray: not before something is there to be merged
   Merged sums;
   std::vector<NearPhoton>& near = scratch.near;
   near.clear();
   float sum = 0;
   for_each_near(job.photons[inner], v.p, radius, [&](const Photon& p) {
     const float cosine = std::abs(glm::dot(v.guide.ng, p.wi));
-    if (p.s > most || !same_surface(disc, p) || !(cosine > 1e-6f)) return;
+    if (p.s > most || !same_surface(v, radius, p) || !(cosine > 1e-6f)) return;
+    if (job.final_gather > 0 && !inner && !p.straight) return;  // what gathers bring
+    if (!disc) disc.emplace(disc_about(job, v, radius));
+    if (!same_surface(v, disc->radius, p)) return;
     const GuideEval e = evaluate(v.guide, p.wi, Mode::radiance);
     if (is_black(e.f_cos)) return;
     ++scratch.ledger->merge_at(p.s, t).joins;
@@ -154,10 +158,10 @@ void join_merged(const Job& job, Sample& sample, Scratch& scratch) {
   if (!near.empty() && !(sum <= 0)) {  // what is no number is counted when it is added
     Sampler sampler = make_sampler(SamplerKind::independent, hash(job.seed, 0xd15c + uint64_t(t)), Side::camera,
                                    sample.path, sample.pass);
-    const float of_disc = full * sqr(disc.radius / radius), few = inner ? float(inner_photons) : 1;
-    const float seen = share_in_sight(job, disc, near, sampler.next2().x);
+    const float of_disc = full * sqr(disc->radius / radius), few = inner ? float(inner_photons) : 1;
+    const float seen = share_in_sight(job, *disc, near, sampler.next2().x);
     if (seen > 0)
-      add_merged(sums, t, v.beta * (few * seen * over_coverage(job, disc, sampler) / of_disc), sample, scratch);
+      add_merged(sums, t, v.beta * (few * seen * over_coverage(job, *disc, sampler) / of_disc), sample, scratch);
   }
   charge(scratch, scratch.ledger->merge_at(0, t).ticks);
 }

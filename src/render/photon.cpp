@@ -6,49 +6,60 @@
 
 namespace ajar {
 
-void trace_photons(const Job& job, Sample& sample, Scratch& scratch) {
-  Sampler sampler = make_sampler(job.sampler, job.seed, Side::light, sample.path, sample.pass);
-  Subpath& light = scratch.light;
-  Walk walk;
-  Surface surface;
-  light.n = 0;
-  if (start_light(*job.scene, job.walk, sampler, light, walk)) {
-    ++scratch.counters.light_paths;
-    while (light.n < job.walk.max_edges) {
-      if (light.n > 1 && !scatter(job.walk, sampler, light, walk)) break;
-      ++scratch.counters.light_rays;
-      if (!step(*job.scene, *job.accel, job.walk, light, walk, surface)) break;
-    }
+namespace {
+
+void follow(const Job& job, Sample& sample, Scratch& scratch, Walk walk, bool gathers, int rays);
+
+// Final gather: rays go on from the camera subpath's last vertex, and what they find is merged there. Those that a
+// delta sends on are no gather: they see what the eye would.
+void gather(const Job& job, Sample& sample, Scratch& scratch, const Walk& walk, int rays) {
+  Subpath& camera = scratch.camera;
+  const int t = camera.n;
+  for (int i = 0; i < rays; ++i) {
+    Walk ray = walk;
+    camera.n = t;
+    if (!scatter(job.walk, sample.sampler, camera, ray)) continue;
+    ray.beta /= float(rays);
+    follow(job, sample, scratch, ray, !camera[t - 1].delta, 1);
   }
-  keep_photons(job, sample, walk.first_share, scratch);
-  charge(scratch, scratch.ledger->light_ticks);
 }
 
-void trace_photon(const Job& job, Sample& sample, Scratch& scratch) {
+// Through what reflects or refracts sharply to where light vertices are merged. rays: of a final gather from there.
+// What gathers does not see lamps: their light is merged where it came from.
+void follow(const Job& job, Sample& sample, Scratch& scratch, Walk walk, bool gathers, int rays) {
   const Scene& scene = *job.scene;
   Subpath& camera = scratch.camera;
-  Walk walk;
   Surface surface;
   const auto add = [&](int t, const Rgb& found) {
     sample.value += found;
     gain(scratch, 0, t, found * sample.filter);
     charge_join(scratch, 0, t);
   };
-  start_camera(scene, job.walk, sample.raster, sample.lens, camera, walk);
   do {
     ++scratch.counters.camera_rays;
     const bool hit = step(scene, *job.accel, job.walk, camera, walk, surface);
     charge(scratch, scratch.ledger->camera_ticks);
     if (!hit) {
       for (const uint32_t light : scene.infinite_lights)
-        add(camera.n + 1, walk.beta * environment(scene, light, walk.d));
+        if (!gathers) add(camera.n + 1, walk.beta * environment(scene, light, walk.d));
       return;
     }
     const Vertex& v = camera[camera.n - 1];
-    if (scene.shapes[surface.shape].light != none) add(camera.n, v.beta * emitted(scene, surface, v.guide.wo));
-    if (camera.n <= job.walk.max_edges && connectable(v.guide)) join_merged(job, sample, scratch);
-  } while (camera.n <= job.walk.max_edges && scatter(job.walk, sample.sampler, camera, walk) &&
-           camera[camera.n - 1].delta);
+    const bool shines = scene.shapes[surface.shape].light != none;
+    if (shines && !gathers) add(camera.n, v.beta * emitted(scene, surface, v.guide.wo));
+    if (camera.n > job.walk.max_edges) return;
+    if (!connectable(v.guide)) continue;
+    join_merged(job, sample, scratch);
+    if (!gathers && job.final_gather > 0) return gather(job, sample, scratch, walk, rays);
+  } while (scatter(job.walk, sample.sampler, camera, walk) && camera[camera.n - 1].delta);
+}
+
+}  // namespace
+
+void trace_photon(const Job& job, Sample& sample, Scratch& scratch) {
+  Walk walk;
+  start_camera(*job.scene, job.walk, sample.raster, sample.lens, scratch.camera, walk);
+  follow(job, sample, scratch, walk, false, job.final_gather);
 }
 
 }  // namespace ajar

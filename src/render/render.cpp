@@ -30,7 +30,7 @@ constexpr Integrator integrators[] = {{"path", trace_path, false},
                                       {"guided-bdpt", trace_bdpt, true, true, trace_light_half},
                                       {"vcm", trace_bdpt, true, false, trace_light_half, true},
                                       {"guided-vcm", trace_bdpt, true, true, trace_light_half, true},
-                                      {"photon", trace_photon, false, false, trace_photons, true},
+                                      {"photon", trace_photon, false, false, trace_light_half, true},
                                       {"vpl", trace_vpl, true, true, trace_light_half, false, true},
                                       {"plain-vpl", trace_vpl, true, false, nullptr, false, true}};
 
@@ -322,6 +322,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   const bool merging = integrator.merges && options.merge_radius > 0;
   job.trace = integrator.trace, job.light_half = integrator.light_half;
   job.merges_alone = integrator.trace == trace_photon;
+  job.final_gather = options.final_gather;
   if (learns(options)) {
     job.learning = &state.learning, job.training = &state.learning.training;
     job.walk.fields = &state.learning.fields;

@@ -62,6 +62,10 @@ const Option options_table[] = {
      [](const RenderOptions& o) {
        return Json(light_choices[o.learn.lights && (o.learn_lights || is_guided(o.integrator))]);
      }},
+    {"merge_radius", [](RenderOptions& o, const Element& e) { o.merge_radius = float(number(e, 0, 1e6)); },
+     [](const RenderOptions& o) { return Json(o.merge_radius); }},
+    {"final_gather", [](RenderOptions& o, const Element& e) { o.final_gather = int(integer(e, 1, 1024)); },
+     [](const RenderOptions& o) { return Json(o.final_gather); }},
     {"train", [](RenderOptions& o, const Element& e) { o.learn.train = uint32_t(integer(e, 0, 1 << 20)); },
      [](const RenderOptions& o) { return Json(o.learn.train); }},
 };

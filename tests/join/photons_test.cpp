@@ -2,6 +2,7 @@
 #include "ajar/join/photons.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <random>
@@ -82,6 +83,38 @@ TEST(Photons, ForgetsThoseBefore) {
   EXPECT_TRUE(map.photons.empty());
   EXPECT_TRUE(found(map, Vec3(0), 10).empty());
 }
+
+#ifndef AJAR_SANITIZED
+size_t peak_of_memory() {
+  rusage use{};
+  getrusage(RUSAGE_SELF, &use);
+  return size_t(use.ru_maxrss) << 10;
+}
+
+// Ten million: as many as were put in come out, a box of them whole, and sorting takes what docs/method.md says.
+TEST(Photons, TenMillion) {
+  constexpr size_t all = 10'000'000, lists = 250;
+  std::vector<Photons> cut(lists, Photons(all / lists));
+  uint64_t random = 1;
+  const auto next = [&] { return float(double((random = hash(random, 7)) >> 11) * 0x1p-53); };
+  for (Photons& list : cut)
+    for (Photon& p : list) p.p = {next(), next(), next()};
+  std::vector<const Photons*> pointers;
+  for (const Photons& l : cut) pointers.push_back(&l);
+  const size_t before = peak_of_memory();
+  PhotonMap map;
+  fill(map, {100, Vec3(0), 0, 0.01f, 0.01f, 1}, pointers);
+  EXPECT_LT(peak_of_memory() - before, all * (sizeof(Photon) + 24) * 21 / 20 + (64 << 20));
+  ASSERT_EQ(map.photons.size(), all);
+  for (const Vec3& at : {Vec3(0.5f), Vec3(0.3f, 0.9f, 0.1f), Vec3(0, 0, 1)}) {
+    size_t right = 0;
+    for (const Photons& l : cut)
+      for (const Photon& p : l) right += length2(p.p - at) < sqr(0.01f);
+    EXPECT_EQ(found(map, at, 0.01f).size(), right);
+    EXPECT_GT(right, 0u);
+  }
+}
+#endif
 
 TEST(Photons, RadiusZeroFindsNone) {
   const Merging still = {100, Vec3(0), 0, 0, 0, 1};

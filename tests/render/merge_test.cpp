@@ -96,6 +96,51 @@ TEST(Merging, ConvergesAsTheRadiusShrinks) {
   }
 }
 
+// What gathers bring is what they leave out at the first vertex: caustics of glass, a floor whose boundary reflects
+// sharply, and all else.
+TEST(Merging, FinalGatherFindsTheSameLight) {
+  Scene scene;
+  scene.filter = make_filter(FilterKind::box);
+  set_camera(scene, {0, 0, 4.2f}, {0, -0.1f, 0}, 36, 24, 24);
+  Material coated, glass;
+  coated.kind = MaterialKind::plastic, glass.kind = MaterialKind::dielectric;
+  add_open_room(scene, add_material(scene, coated));
+  add_ceiling(scene);
+  add_lamp(scene, 0.4f, Rgb(12, 10, 8));
+  add_sphere(scene, {0.1f, -0.4f, 0.2f}, 0.5f, add_material(scene, glass));
+  finish(scene);
+  const Estimate right = measure(scene, statistical("bdpt"), {8, 32, 1});
+  RenderOptions o = statistical("photon");
+  o.merge_radius = 0.5f;
+  for (const int rays : {1, 4}) {
+    o.final_gather = rays;
+    expect_same(measure(scene, o, {8, 16, 100}), right, std::to_string(rays) + " rays");
+  }
+}
+
+// Mean of squared relative differences to the right image.
+double error_of(const Picture& p, const Estimate& right) {
+  double sum = 0;
+  for (size_t i = 0; i < p.pixels.size(); ++i)
+    sum += sqr(double(p.pixels[i]) - right.mean[i]) / (sqr(right.mean[i]) + 1e-4);
+  return sum / double(p.pixels.size());
+}
+
+// Areas shrink with the cube root of the passes, so that variance and squared bias fall as passes^(-2/3) while bias is
+// most of the error, as with these radii of a sixth of the room; a radius that stays leaves the bias where it was.
+TEST(Merging, ErrorFallsWithTheRadius) {
+  Scene scene = cornell(24);
+  const Estimate right = measure(scene, statistical("bdpt"), {8, 32, 1});
+  add_quad(scene, {0, 0, 60}, {1, 0, 0}, {0, 1, 0}, 0);  // radii are bounded by the scene's
+  finish(scene);
+  for (const char* integrator : {"photon", "guided-vcm"}) {
+    const double few = error_of(render_once(scene, with_radius(integrator, 4, 16)), right);
+    const double many = error_of(render_once(scene, with_radius(integrator, 4, 256)), right);
+    const double slope = std::log(many / few) / std::log(16.0);
+    EXPECT_LT(slope, -0.35) << integrator;
+  }
+}
+
 // A closed box, divided by a wall of no thickness or next to none, with a gap below it or none; the lamp shines in one
 // half, the camera is in the other.
 Scene divided(float thickness, float gap = 0) {

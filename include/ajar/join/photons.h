@@ -18,7 +18,8 @@ struct alignas(64) Photon {
   float fixed = 0;  ///< MergeSide
   Rgb beta{0};      ///< flux that arrives, times the number of light subpaths
   float slope = 0;
-  Vec3 n{0};  ///< geometric normal on the side that the light arrives on
+  Vec3 n{0};              ///< geometric normal on the side that the light arrives on
+  bool straight = false;  ///< nothing but deltas lies between it and the light
 };
 
 /// Photons by the cell of a grid that they are in. The radius changes with the place, and so does the edge of the

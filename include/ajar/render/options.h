@@ -24,9 +24,10 @@ struct RenderOptions {
   int roulette_depth = 5;  ///< edges of a subpath that are traced without roulette
   Heuristic heuristic = Heuristic::power;
   SamplerKind sampler = SamplerKind::sobol;
-  bool next_event = true;     ///< next-event estimation; only integrators without light subpaths can do without
-  float merge_radius = 5;     ///< of vcm, guided-vcm and photon, in the first pass [pixels]; 0: nothing is merged
-  LearnOptions learn;         ///< guided integrators, and others that learn lights
+  bool next_event = true;  ///< next-event estimation; only integrators without light subpaths can do without
+  float merge_radius = 5;  ///< of vcm, guided-vcm and photon, in the first pass [pixels]; 0: nothing is merged
+  int final_gather = 0;    ///< of photon: rays that bring indirect light to the first vertex; 0: light vertices there
+  LearnOptions learn;      ///< guided integrators, and others that learn lights
   bool learn_lights = false;  ///< path and bdpt: learn which lights cells see (LearnOptions::lights), and nothing else
   bool techniques = false;    ///< keep an image of every (s, t)
 };
