@@ -78,10 +78,11 @@ struct Halves {
   Photons photons, few;
 };
 
-/// A light vertex near a camera vertex, and what all up to it bring.
+/// A light vertex near a camera vertex, what it brings, with its weight, and what all up to it bring.
 struct NearPhoton {
   const Photon* photon = nullptr;
-  float sum = 0;
+  Rgb found{0};
+  float weight = 0, sum = 0;
 };
 
 /// Storage of one thread at work on one chunk; kept from chunk to chunk. Threads share no cache line.

@@ -1,7 +1,5 @@
 // Merging: camera vertices take the light that arrives at light vertices near them (Georgiev et al. 2012).
 
-#include <optional>
-
 #include "job.h"
 
 namespace ajar {
@@ -12,6 +10,10 @@ constexpr float facing_share = 0.9f, plane_share = 0.2f;
 
 // Of the light vertices that a camera vertex is merged with, so many are looked for.
 constexpr int sights = 2;
+
+// Merges beyond the first vertex that bring less than this share of what the sample has found are not all tried, but
+// one in so many at least.
+constexpr float worth_share = 0.1f, least_tried = 1.0f / 16;
 
 // Smallest disc, of the radius.
 constexpr float least_disc = 0.125f;
@@ -90,6 +92,11 @@ struct Merged {
   std::array<Rgb, Ledger::most + 1> raw{}, weighted{};
 };
 
+// The probability of looking at merges for which rays must be traced, which would add so much to what was found before.
+float chance_to_try(float adds, float found) {
+  return std::clamp(adds / (worth_share * found), least_tried, 1.0f);  // (K9)
+}
+
 void add_merged(const Merged& sums, int t, const Rgb& factor, Sample& sample, Scratch& scratch) {
   for (int s = 2; s <= Ledger::most; ++s) {
     const Rgb found = sums.weighted[size_t(s)] * factor;
@@ -111,6 +118,43 @@ MergeSide camera_side(const Job& job, const Subpath& camera) {
   return merge_side(job.walk.heuristic, end, v.back, shares, Side::camera);
 }
 
+// What all light vertices within the radius would bring, were they in sight. Returns the luminance of their sum.
+float find_near(const Job& job, const Subpath& camera, bool inner, float radius, Scratch& scratch) {
+  const int t = camera.n, most = job.walk.max_edges + 2 - t;
+  const Vertex& v = camera[t - 1];
+  const MergeSide side = camera_side(job, camera);
+  float sum = 0;
+  scratch.near.clear();
+  for_each_near(job.photons[inner], v.p, radius, [&](const Photon& p) {
+    const float cosine = std::abs(glm::dot(v.guide.ng, p.wi));
+    if (p.s > most || !same_surface(v, radius, p) || !(cosine > 1e-6f)) return;
+    if (job.final_gather > 0 && !inner && !p.straight) return;  // what gathers bring
+    const GuideEval e = evaluate(v.guide, p.wi, Mode::radiance);
+    if (is_black(e.f_cos)) return;
+    ++scratch.ledger->merge_at(p.s, t).joins;
+    const double w = job.merges_alone
+                         ? 1
+                         : merge_weight(job.walk.heuristic, v.merge, {p.fixed, p.slope}, e.pdf, side, e.pdf_reverse);
+    scratch.near.push_back({&p, e.f_cos * p.beta / cosine, float(w)});  // (K1)
+    sum += luminance(scratch.near.back().found) * float(w);
+  });
+  return sum;
+}
+
+// Forgets what is not on the disc, and sums up the others.
+Merged sum_up(const Disc& disc, std::vector<NearPhoton>& near) {
+  Merged sums;
+  float sum = 0;
+  std::erase_if(near, [&](const NearPhoton& n) { return !same_surface(disc.v, disc.radius, *n.photon); });
+  for (NearPhoton& n : near) {
+    const size_t row = size_t(std::min(n.photon->s, Ledger::most));
+    sums.raw[row] += n.found;
+    sums.weighted[row] += n.found * n.weight;
+    n.sum = sum += luminance(n.found) * n.weight;
+  }
+  return sums;
+}
+
 }  // namespace
 
 bool is_one_in(uint32_t n, const Sample& sample) { return (sample.path + sample.pass) % n == 0; }
@@ -126,42 +170,27 @@ void keep_photons(const Job& job, const Sample& sample, double share, Scratch& s
 
 void join_merged(const Job& job, Sample& sample, Scratch& scratch) {
   const Subpath& camera = scratch.camera;
-  const int t = camera.n, most = job.walk.max_edges + 2 - t;
+  const int t = camera.n;
   const Vertex& v = camera[t - 1];
   if (!(v.merge > 0)) return;
-  const MergeSide side = camera_side(job, camera);
   const float radius = merge_radius(job.walk.merging, v.p), full = merge_density(job.walk.merging, v.p);
   const bool inner = v.merge < full;
-  std::optional<Disc> disc;  // costs a ray: not before something is there to be merged
-  Merged sums;
+  const float few = inner ? float(inner_photons) : 1;
   std::vector<NearPhoton>& near = scratch.near;
-  near.clear();
-  float sum = 0;
-  for_each_near(job.photons[inner], v.p, radius, [&](const Photon& p) {
-    const float cosine = std::abs(glm::dot(v.guide.ng, p.wi));
-    if (p.s > most || !same_surface(v, radius, p) || !(cosine > 1e-6f)) return;
-    if (job.final_gather > 0 && !inner && !p.straight) return;  // what gathers bring
-    if (!disc) disc.emplace(disc_about(job, v, radius));
-    if (!same_surface(v, disc->radius, p)) return;
-    const GuideEval e = evaluate(v.guide, p.wi, Mode::radiance);
-    if (is_black(e.f_cos)) return;
-    ++scratch.ledger->merge_at(p.s, t).joins;
-    const Rgb found = e.f_cos * p.beta / cosine;  // (K1)
-    const size_t row = size_t(std::min(p.s, Ledger::most));
-    const double w = job.merges_alone
-                         ? 1
-                         : merge_weight(job.walk.heuristic, v.merge, {p.fixed, p.slope}, e.pdf, side, e.pdf_reverse);
-    sums.raw[row] += found;
-    sums.weighted[row] += found * float(w);
-    near.push_back({&p, sum += luminance(found) * float(w)});
-  });
+  const float sum = find_near(job, camera, inner, radius, scratch);
   if (!near.empty() && !(sum <= 0)) {  // what is no number is counted when it is added
     Sampler sampler = make_sampler(SamplerKind::independent, hash(job.seed, 0xd15c + uint64_t(t)), Side::camera,
                                    sample.path, sample.pass);
-    const float of_disc = full * sqr(disc->radius / radius), few = inner ? float(inner_photons) : 1;
-    const float seen = share_in_sight(job, *disc, near, sampler.next2().x);
+    const Vec2 u = sampler.next2();
+    const float adds = luminance(v.beta) * sum * few / full;
+    const float tried = inner ? chance_to_try(adds, luminance(sample.value)) : 1;
+    if (u.y >= tried) return charge(scratch, scratch.ledger->merge_at(0, t).ticks);
+    const Disc disc = disc_about(job, v, radius);
+    const Merged sums = sum_up(disc, near);
+    const float of_disc = full * sqr(disc.radius / radius) * tried;
+    const float seen = near.empty() ? 0 : share_in_sight(job, disc, near, u.x);
     if (seen > 0)
-      add_merged(sums, t, v.beta * (few * seen * over_coverage(job, *disc, sampler) / of_disc), sample, scratch);
+      add_merged(sums, t, v.beta * (few * seen * over_coverage(job, disc, sampler) / of_disc), sample, scratch);
   }
   charge(scratch, scratch.ledger->merge_at(0, t).ticks);
 }
