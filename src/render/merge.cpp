@@ -29,6 +29,13 @@ struct Disc {
   float lift = 0;  // of lines of sight over the surface
 };
 
+// Angle [rad] about the mirror direction that a disc with the density there would fill: 1 for diffuse surfaces.
+float lobe_width(const Guide& guide) {
+  const Vec3 wo = guide.wo_local;
+  const float pdf = eval(guide.bsdf, wo, {-wo.x, -wo.y, wo.z}, Mode::radiance).pdf;
+  return std::min(1 / std::sqrt(pi * std::max(pdf, 1e-6f)), 1.0f);
+}
+
 // Light under a door changes within the height of the gap, so that the disc is smaller where something is near above.
 // Lines of sight run as high as what is merged may lie, so that they do not slip under a door; under one, lower.
 Disc disc_about(const Job& job, const Vertex& v, float radius) {
@@ -36,7 +43,8 @@ Disc disc_about(const Job& job, const Vertex& v, float radius) {
   Hit above;
   above.t = radius;
   job.accel->intersect(offset(v.p, v.ng, v.error, frame.n), frame.n, 0, radius, above);
-  const float r = std::clamp(2 * above.t, least_disc * radius, radius);  // (K8)
+  const float seen_in_it = 0.25f * lobe_width(v.guide) * std::sqrt(length2(v.p - job.walk.merging.eye));
+  const float r = std::clamp(std::min(2 * above.t, seen_in_it), least_disc * radius, radius);  // (K8)
   return {v, frame, r, std::min(std::max(plane_share * r, 4 * v.error), 0.5f * above.t)};
 }
 

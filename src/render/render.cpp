@@ -322,7 +322,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   const bool merging = integrator.merges && options.merge_radius > 0;
   job.trace = integrator.trace, job.light_half = integrator.light_half;
   job.merges_alone = integrator.trace == trace_photon;
-  job.final_gather = options.final_gather;
+  if (job.merges_alone) job.final_gather = options.final_gather;
   if (learns(options)) {
     job.learning = &state.learning, job.training = &state.learning.training;
     job.walk.fields = &state.learning.fields;
