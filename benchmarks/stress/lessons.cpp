@@ -19,6 +19,7 @@ Lesson look(const RenderState& state) {
     out.most = std::max(out.most, radiance);
   }
   if (visits > 0) out.mean /= visits;
+  out.cells = state.learning.fields.q.cells.size();
   return out;
 }
 

@@ -12,6 +12,7 @@ struct Lesson {
   uint32_t number = 0, passes = 0;  ///< passes traced until then
   double mean = 0;                  ///< radiance that Q expects, irradiance / pi, over cells as they are visited
   double most = 0;                  ///< of any cell
+  size_t cells = 0;
 };
 
 /// Every wall emits 1: the radiance is 1 / (1 - albedo) everywhere, after lesson n at most 1 + albedo + ... to the n-th

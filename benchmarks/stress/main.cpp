@@ -200,36 +200,39 @@ std::string lessons_of_renders() {
   return text;
 }
 
-// Lessons that learning takes when every pass is one, next to what a contraction by the albedo would take, and how far
-// any cell goes beyond the answer on the way. A box of albedo 1 has none: its field may grow by 1 a lesson.
-std::string lessons_to_converge() {
-  constexpr int edges = 8;
+// Lessons that learning takes when every pass is one, next to what a contraction by the albedo would take were every
+// entry updated in every lesson, and how far any cell goes beyond the answer on the way. A box of albedo 1 has none:
+// its field may grow by 1 a lesson. Cells that are never divided are few enough to be met by every lesson.
+std::string lessons_to_converge(bool large) {
+  constexpr int edges = 8, size = 16;
   constexpr double converged = 0.95;
   std::string text =
-      "| albedo | 1/(1−a) | paths a lesson | lessons to 5 % | were all entries updated | after the last | "
-      "largest cell ever |\n|--:|--:|--:|--:|--:|--:|--:|\n";
-  for (const float albedo : {0.9f, 0.99f, 0.999f, 1.0f})
-    for (const int size : {16, 64}) {
+      "| albedo | 1/(1−a) | cells | lessons to 5 % | if all were updated | ratio | after the last | "
+      "largest cell ever |\n|--:|--:|--:|--:|--:|--:|--:|--:|\n";
+  for (const bool divided : {false, true})
+    for (const float albedo : {0.9f, 0.99f, 0.999f, 1.0f}) {
       const double inverse = 1 - double(albedo), ideal = std::log(1 - converged) / std::log(double(albedo));
-      const uint32_t most = albedo < 1 ? 2 * uint32_t(std::min(6 * ideal, size > 16 ? 1200.0 : 12000.0) / 2) : 1000;
+      if (albedo > 0.995f && albedo < 1 && (divided || !large)) continue;  // many thousands of lessons
+      const uint32_t most = albedo < 1 ? 2 * uint32_t((divided ? 6 : 4) * ideal / 2) : 500;
       LearnOptions learn;
       learn.forget = 0, learn.train = most;
+      if (!divided) learn.divide_cell = 1e30f, learn.divide_stratum = 2;
       const std::vector<Lesson> all = lessons(albedo, learn, 0, size, edges);
       double largest = 0;
       for (const Lesson& l : all) largest = std::max(largest, l.most * (albedo < 1 ? inverse : 1.0 / l.number));
       const uint32_t n = albedo < 1 ? lesson_of_convergence(all, albedo, converged) : 0;
-      text +=
-          fmt::format("| {:g} | {} | {} | {} | {} | {:.3f} ({}) | {:.3f} |\n", albedo,
-                      albedo < 1 ? fmt::format("{:.0f}", 1 / inverse) : "∞", size * size,
-                      n > 0 ? fmt::format("{}", n) : "–", albedo < 1 ? fmt::format("{:.0f}", ideal) : "–",
-                      all.back().mean * (albedo < 1 ? inverse : 1.0 / all.back().number), all.back().number, largest);
-      fmt::print(stderr, "albedo {}, {} paths: {} lessons\n", albedo, size * size, all.size());
+      text += fmt::format(
+          "| {:g} | {} | {} | {} | {} | {} | {:.3f} ({}) | {:.3f} |\n", albedo,
+          albedo < 1 ? fmt::format("{:.0f}", 1 / inverse) : "∞", all.back().cells, n > 0 ? fmt::format("{}", n) : "–",
+          albedo < 1 ? fmt::format("{:.0f}", ideal) : "–", n > 0 ? fmt::format("{:.2f}", n / ideal) : "–",
+          all.back().mean * (albedo < 1 ? inverse : 1.0 / all.back().number), all.back().number, largest);
+      fmt::print(stderr, "albedo {}, {} cells: {} lessons\n", albedo, all.back().cells, all.size());
     }
   return text;
 }
 
 int show_lessons(const Arguments& a) {
-  const std::string table = lessons_to_converge();
+  const std::string table = lessons_to_converge(a.large);
   write_or_print(a, a.large ? table + "\n" + lessons_of_renders() : table);
   return 0;
 }
@@ -261,7 +264,7 @@ int main(int argc, char** argv) {
   app.add_option("--batches", a.batches, "independent renders of each")->check(CLI::Range(4, 1024));
   app.add_option("--limit", a.limit, "CPU seconds after which a case is given up");
   app.add_flag("--lessons", a.lessons,
-               "instead: what is learned of closed boxes, lesson by lesson; --large: in renders too");
+               "instead: what is learned of closed boxes, lesson by lesson; --large: albedo 0.999, and renders too");
   app.add_flag("--large", a.large, "cases of minutes and gigabytes too");
   CLI11_PARSE(app, argc, argv);
   try {

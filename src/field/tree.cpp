@@ -1,12 +1,46 @@
 #include "tree.h"
 
+#include <numbers>
+
 #include "fixed.h"
 
 namespace ajar {
 namespace {
 
-// Area of the projected hemisphere under a stratum: [corner, corner + width] of the unit square.
+// Integral of x^2 / (x^2 + y^2) over [0, x] x [0, y] without what depends on one of them alone.
+double antiderivative(double x, double y) {
+  return 0.5 * (x * x * std::atan2(y, x) + x * y - y * y * std::atan2(x, y));
+}
+
+// Area of the projected hemisphere under a stratum: [corner, corner + width] of the unit square. Those of one level add
+// up to pi. The map stretches by max(x, y)^2 / (x^2 + y^2), x and y from -1 to 1; no stratum lies on an axis, and one
+// that a diagonal divides is cut in two equal halves by it.
+double exact_area(const Vec2& corner, float width) {
+  const glm::dvec2 a = glm::abs(2.0 * glm::dvec2(corner) - 1.0),
+                   b = glm::abs(2.0 * (glm::dvec2(corner) + double(width)) - 1.0);
+  glm::dvec2 from = glm::min(a, b), to = glm::max(a, b);
+  if (from.y > from.x) std::swap(from.x, from.y), std::swap(to.x, to.y);
+  if (from.x == from.y)
+    return std::numbers::pi / 4 * (sqr(to.x) - sqr(from.x)) -
+           2 * (antiderivative(to.x, from.y) - antiderivative(from.x, from.y));
+  return antiderivative(to.x, to.y) - antiderivative(from.x, to.y) - antiderivative(to.x, from.y) +
+         antiderivative(from.x, from.y);
+}
+
+// The same; of small strata, whose areas hardly differ from their neighbours', from four points.
 float stratum_area(const Vec2& corner, float width) {
+  constexpr int across = 16;
+  static const std::vector<float> exact = [] {
+    std::vector<float> areas;
+    for (const int n : {4, across})
+      for (int i = 0; i < n * n; ++i) areas.push_back(float(exact_area(Vec2(i % n, i / n) / float(n), 1 / float(n))));
+    return areas;
+  }();
+  const int n = int(1 / width);
+  if (n <= across) {
+    const size_t at = size_t(corner.y * float(n)) * size_t(n) + size_t(corner.x * float(n));
+    return exact[n == across ? 16 + at : at];
+  }
   float sum = 0;
   for (int i = 0; i < 4; ++i) {
     const Vec2 a = 2.0f * (corner + width * Vec2(0.25f + 0.5f * float(i & 1), 0.25f + 0.5f * float(i >> 1))) - 1.0f;

@@ -55,20 +55,24 @@ bool set_pilot_size(Camera& camera, double budget) {
   return true;
 }
 
-// What an integrator sees in passes after those whose numbers guided ones drop, and what a sample costs.
+// What an integrator sees in passes after those whose numbers guided ones drop, and what a sample costs. walls: where
+// the first guided one found that they divide cells.
 Trial run_trial(const Scene& scene, const Accel& accel, RenderOptions options, const Candidate& c,
-                const Monitor& monitor, Sight& sight) {
+                const Monitor& monitor, CellTable& walls, Sight& sight) {
   options.integrator = c.name;
   options.spp = trial_passes;
   options.seconds = options.cpu_seconds = options.noise = 0;
   options.techniques = false;
   options.learn.train = 0;
   RenderState state = start_render(scene, options);
+  CellTable& table = state.learning.fields.table;
+  table.cuts = walls.cuts, table.compartments = walls.compartments;
   if (!c.guided) state.film.dropped = blind_generations;
   render(scene, accel, options, state, [&](const RenderState& now) {
     if (now.film.chunks == 0 && now.film.dropped > 0 && now.film.passes > sight.passes.size()) look(now.film, sight);
     return monitor(now);
   });
+  if (c.guided) walls.cuts = table.cuts, walls.compartments = table.compartments;
   const Counters& n = state.stats.counters;
   const double rays = double(n.camera_rays + n.light_rays + n.shadow_rays);
   Trial t;
@@ -148,12 +152,13 @@ bool run_pilot(Scene& scene, const Accel& accel, const RenderOptions& options, d
   if (!set_pilot_size(scene.camera, budget)) return false;
   plan.width = scene.camera.width, plan.height = scene.camera.height;
   std::vector<Sight> sights;
+  CellTable walls;
   plan.trials.clear();
   bool go_on = true;
   const Monitor watch = [&](const RenderState& state) { return go_on = !monitor || monitor(state); };
   for (const Candidate& c : candidates) {
     Sight sight;
-    Trial trial = run_trial(scene, accel, options, c, watch, sight);
+    Trial trial = run_trial(scene, accel, options, c, watch, walls, sight);
     if (!go_on) break;
     plan.trials.push_back(std::move(trial));
     sights.push_back(std::move(sight));

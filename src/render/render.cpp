@@ -326,9 +326,6 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   if (learns(options)) {
     job.learning = &state.learning, job.training = &state.learning.training;
     job.walk.fields = &state.learning.fields;
-    Fields& fields = state.learning.fields;
-    if (fields.structure == Structure::adaptive && fields.table.compartments.empty())
-      cut_along_walls(scene, accel, fields.table);
   }
   if (is_guided(options.integrator)) {
     job.guided = true;
@@ -347,6 +344,9 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   const uint32_t most = most_passes(options);
   Threads threads(options.threads);
   std::vector<Scratch> scratches(size_t(threads.count()));
+  Fields& fields = state.learning.fields;
+  if (job.learning && fields.structure == Structure::adaptive && fields.table.compartments.empty())
+    threads.run([&] { cut_along_walls(scene, accel, fields.table); });
   Batch batch;
   Vpls vpls;
   if (integrator.vpls) vpls = make_vpls(scene, film, integrator.guided);

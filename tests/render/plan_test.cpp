@@ -45,7 +45,7 @@ TEST(Plan, LeavesOutWhatAnEasySceneDoesNotNeed) {
 
 TEST(Plan, KeepsGuidingBehindADoor) {
   for (const uint64_t seed : {1, 2}) {
-    const Plan plan = plan_for(two_rooms(10, 144), 30, seed);
+    const Plan plan = plan_for(two_rooms(20, 144), 30, seed);
     EXPECT_EQ(plan.integrator, "guided-bdpt");
     EXPECT_TRUE(is_on(plan, "light-guiding"));
     EXPECT_LT(1.1 * trial(plan, "guided-bdpt").price(), trial(plan, "path").price());

@@ -128,6 +128,14 @@ TEST(Lessons, ComeAsFastAsTheAlbedoAllows) {
   EXPECT_LT(n, 4 * expected);
 }
 
+// With cells few enough to be met by every lesson it comes to the answer itself: areas of strata that add up to less
+// than pi would let a share of the light leak at every bounce.
+TEST(Lessons, ComeToTheAnswer) {
+  LearnOptions learn;
+  learn.train = 100, learn.forget = 0, learn.divide_cell = 1e30f, learn.divide_stratum = 2;
+  EXPECT_NEAR(lessons(0.9f, learn, 0, 16, 8).back().mean, 10, 1.2);
+}
+
 // What mirrors and glass pass on is light that Q knows: behind a mirror, what the fields expect at the screen is what
 // the image shows.
 TEST(Lessons, KnowWhatAMirrorPassesOn) {
