@@ -61,7 +61,8 @@ struct Sample {
   uint64_t path = 0;  ///< index of the pixel
   uint32_t pass = 0;
   Vec2 raster{0}, lens{0};
-  float filter = 1;  ///< what the filter makes of the camera path's radiance
+  float filter = 1;  ///< what the filter makes of the camera path's radiance, times counts
+  float counts = 1;  ///< for how many samples of its pass it stands, where not all are traced
   Sampler sampler;
   bool teaches = false;  ///< what its subpaths see is recorded
   Rgb value{0};          ///< radiance found by the camera path, unfiltered

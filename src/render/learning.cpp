@@ -48,13 +48,20 @@ StoredFields stored_fields(const Scene& scene, const Learning& l, const Film& fi
 
 bool in_training(const Learning& l) { return l.train > 0 && is_young(l); }
 
+uint32_t traced_one_in(const Learning& l, const Film& film) {
+  constexpr uint32_t most[blind_generations] = {4, 4, 2, 2};
+  constexpr size_t least_pixels = 4096;
+  if (l.train > 0 || l.lesson > 1 || l.fields.generation >= blind_generations) return 1;
+  return std::min(most[l.fields.generation], uint32_t(std::max<size_t>(film.pixels() / least_pixels, 1)));
+}
+
 bool is_recorded(const Learning& learning, uint64_t pixel, uint32_t pass) {
   return is_young(learning) || (!is_frozen(learning) && hash(pixel, pass) % rare_records == 0);
 }
 
 void end_pass(const Scene& scene, Learning& l, const LearnOptions& options, Film& film) {
   if (is_frozen(l) || ++l.passes < interval(l)) return;
-  const double paths = double(film.pixels()) * l.passes / (is_young(l) ? 1 : rare_records);
+  const double paths = double(film.pixels()) * l.passes / (is_young(l) ? traced_one_in(l, film) : rare_records);
   l.fields = learn(l.fields, l.training, l.sightings, paths, options, &scene.light_tree);
   l.training = start_training(l.fields);
   l.sightings.clear();

@@ -58,6 +58,11 @@ struct Batch {
   PhotonMap photons[2];
 };
 
+// One pixel in so many is traced.
+uint32_t share_of(const Job& job, const Film& film) {
+  return job.guided && job.learning ? traced_one_in(*job.learning, film) : 1;
+}
+
 Sample make_sample(const Job& job, const Film& film, int x, int y) {
   Sample s;
   s.x = x, s.y = y;
@@ -68,7 +73,15 @@ Sample make_sample(const Job& job, const Film& film, int x, int y) {
   const Vec2 centre(float(film.x0 + x) + 0.5f, float(film.y0 + y) + 0.5f);
   s.raster = centre + ajar::sample(film.filter, s.sampler.next2(), s.filter);
   if (job.scene->camera.kind == CameraKind::thinlens) s.lens = s.sampler.next2();
+  s.counts = float(share_of(job, film));
+  s.filter *= s.counts;
   return s;
+}
+
+bool is_traced(const Job& job, const Film& film, int x, int y) {
+  const uint32_t n = share_of(job, film);
+  return n == 1 ||
+         hash(hash(job.seed, film.dropped + film.passes), uint64_t(y) * uint64_t(film.width) + uint64_t(x)) % n == 0;
 }
 
 // Not those that are recorded more than others.
@@ -107,14 +120,18 @@ float number_of(const Job& job, const Film& film, uint32_t chunk) {
 }
 
 // The samples of a chunk and, where light subpaths are stored, their light halves.
-void trace_light_halves(const Job& job, const Film& film, uint32_t chunk, Scratch& scratch) {
+void trace_light_halves(const Job& job, Film& film, uint32_t chunk, Scratch& scratch) {
   const int x0 = int(chunk) % tiles_x(film) * tile, y0 = int(chunk) / tiles_x(film) * tile;
   const int x1 = std::min(x0 + tile, film.width), y1 = std::min(y0 + tile, film.height);
   Halves& halves = *scratch.halves;
   scratch.rejected_at = Scratch::no_path;
   halves.samples.clear();
   for (int y = y0; y < y1; ++y)
-    for (int x = x0; x < x1; ++x) halves.samples.push_back({make_sample(job, film, x, y)});
+    for (int x = x0; x < x1; ++x)
+      if (is_traced(job, film, x, y))
+        halves.samples.push_back({make_sample(job, film, x, y)});
+      else
+        film.camera[size_t(y) * size_t(film.width) + size_t(x)] = Rgb(0);
   clear(halves.store);
   halves.photons.clear(), halves.few.clear();
   if (!job.light_half) return;
@@ -366,6 +383,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   while (!out_of_budget()) {
     const uint32_t from = film.chunks;
     job.walk.merging = merging ? merging_of(scene, options, film, equal_chunks(all)) : Merging{};
+    job.walk.merging.paths /= share_of(job, film);
     const uint32_t count = merging ? std::min(equal_chunks(all), all - from)
                                    : std::min({batch_chunks, all - from, affordable_chunks(options, state)});
     batch.splats.resize(count);

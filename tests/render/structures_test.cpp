@@ -68,6 +68,20 @@ TEST(Structures, OnlyAdaptiveCellsAreCutAlongWalls) {
   }
 }
 
+// An image that ends among them is made of those pixels that were traced, which stand for the others.
+TEST(BlindPasses, TraceSomePixelsOfLargeImages) {
+  const Scene scene = cornell(128);
+  const Accel accel(scene);
+  RenderOptions o = statistical("guided-bdpt");
+  o.spp = 3;
+  const RenderState state = rendered(scene, accel, o);
+  EXPECT_EQ(state.film.dropped, 0u);
+  EXPECT_NEAR(double(state.stats.counters.camera_paths), 128 * 128 * (0.25 + 0.25 + 0.5), 500);
+  const double truth = mean(measure(scene, statistical("bdpt"), {4, 3}));
+  for (const char* integrator : {"guided-path", "guided-bdpt", "guided-vcm"})
+    EXPECT_NEAR(mean(measure(scene, statistical(integrator), {8, 3})) / truth, 1, 0.02) << integrator;
+}
+
 // Irradiance (or importance) that camera (light) vertices see on average, as the cells know it. Cells of one size.
 double mean_total(const Fields& fields, Side side) {
   double sum = 0, weights = 0;
