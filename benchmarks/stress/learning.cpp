@@ -92,7 +92,7 @@ void load_back(const StoredFields& stored, const Scene& scene) {
 Scene poisoned(float value) {
   const Scene scene = usual();
   StoredFields stored = learned(scene, 8);
-  stored.fields.q.mean[stored.fields.q.mean.size() / 2] = value;
+  stored.fields.q.cells[stored.fields.q.cells.size() / 2].total = value;
   load_back(stored, scene);
   return scene;
 }
