@@ -58,6 +58,8 @@ struct Batch {
   PhotonMap photons[2];
 };
 
+uint64_t index_of(const Film& film, int x, int y) { return uint64_t(y) * uint64_t(film.width) + uint64_t(x); }
+
 // One pixel in so many is traced.
 uint32_t share_of(const Job& job, const Film& film) {
   return job.guided && job.learning ? traced_one_in(*job.learning, film) : 1;
@@ -66,7 +68,7 @@ uint32_t share_of(const Job& job, const Film& film) {
 Sample make_sample(const Job& job, const Film& film, int x, int y) {
   Sample s;
   s.x = x, s.y = y;
-  s.path = uint64_t(y) * uint64_t(film.width) + uint64_t(x);
+  s.path = index_of(film, x, y);
   s.pass = film.dropped + film.passes;
   s.teaches = job.learning && is_recorded(*job.learning, s.path, s.pass);
   s.sampler = make_sampler(job.sampler, job.seed, Side::camera, s.path, s.pass);
@@ -80,8 +82,7 @@ Sample make_sample(const Job& job, const Film& film, int x, int y) {
 
 bool is_traced(const Job& job, const Film& film, int x, int y) {
   const uint32_t n = share_of(job, film);
-  return n == 1 ||
-         hash(hash(job.seed, film.dropped + film.passes), uint64_t(y) * uint64_t(film.width) + uint64_t(x)) % n == 0;
+  return n == 1 || hash(hash(job.seed, film.dropped + film.passes), index_of(film, x, y)) % n == 0;
 }
 
 // Not those that are recorded more than others.
@@ -131,7 +132,7 @@ void trace_light_halves(const Job& job, Film& film, uint32_t chunk, Scratch& scr
       if (is_traced(job, film, x, y))
         halves.samples.push_back({make_sample(job, film, x, y)});
       else
-        film.camera[size_t(y) * size_t(film.width) + size_t(x)] = Rgb(0);
+        film.camera[index_of(film, x, y)] = Rgb(0);
   clear(halves.store);
   halves.photons.clear(), halves.few.clear();
   if (!job.light_half) return;
