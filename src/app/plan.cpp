@@ -43,7 +43,7 @@ void add_plan(CLI::App& app) {
   CLI::App* c = app.add_subcommand("plan", "Tell which parts of the method a scene needs");
   c->add_option("scene", a->scene, "Mitsuba XML scene")->required();
   c->add_option("--cpu-time", a->cpu_time,
-                "budget of the render that is planned; the pilot takes about 5 % of it (60s)");
+                "budget of the render that is planned; the pilot takes about 5 % of it, more of a short one (60s)");
   c->add_option("--size", a->size, "WIDTHxHEIGHT instead of the scene's");
   c->add_option("--max-depth", a->max_depth, "edges of the longest path; -1 is unlimited");
   c->add_option("--seed", a->seed, "another seed");

@@ -117,7 +117,7 @@ void trace_pixel(const Job& job, Film& film, Sample& sample, bool splat, Scratch
 
 // A number of the chunk's own in this pass, in [0, 1).
 float number_of(const Job& job, const Film& film, uint32_t chunk) {
-  return float(hash(hash(job.seed, 0x6a32), hash(film.dropped + film.passes, chunk)) >> 40) * 0x1p-24f;
+  return to_unit(uint32_t(hash(hash(job.seed, 0x6a32), hash(film.dropped + film.passes, chunk)) >> 32));
 }
 
 // The samples of a chunk and, where light subpaths are stored, their light halves.
