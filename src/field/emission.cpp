@@ -75,11 +75,6 @@ Vec2 square_of(const Scene& scene, const Vec3& p, const Vec3& direction) {
   if (const float l2 = glm::dot(at, at); l2 > 1) at /= std::sqrt(l2);
   return to_square({at.x, at.y, 0});
 }
-float density_on_disk(const Field& disk, uint32_t region, const Vec2& square) {
-  const Vec3 local = from_square(square);
-  const float x2 = local.x * local.x, y2 = local.y * local.y, m2 = std::max(x2, y2);
-  return density(disk.nodes, disk.cells[region].root, square) * (m2 > 0 ? (x2 + y2) / m2 : 1) * 0.25f;
-}
 
 float disk_mix(const Fields* fields, uint32_t region) {
   return fields && region < fields->disk.cells.size() ? fields->disk.cells[region].mix : 0;
@@ -88,7 +83,7 @@ float disk_mix(const Fields* fields, uint32_t region) {
 // Density of the start's place on the disk, per area.   (V6)
 float disk_pdf(const Scene& scene, const Fields* fields, uint32_t region, const Vec2& square) {
   const float mix = disk_mix(fields, region), even = (1 - mix) * inv_pi;
-  const float guided = mix > 0 ? mix * density_on_disk(fields->disk, region, square) : 0;
+  const float guided = mix > 0 ? mix * disk_density(fields->disk.nodes, fields->disk.cells[region].root, square) : 0;
   return (even + guided) / (scene.radius * scene.radius);
 }
 

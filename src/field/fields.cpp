@@ -1,6 +1,7 @@
 #include "ajar/field/fields.h"
 
 #include "ajar/core/sampler.h"
+#include "ajar/field/portals.h"
 
 namespace ajar {
 namespace {
@@ -27,6 +28,24 @@ Vec3 from_center(const Fields& fields, const Field& field, uint32_t cell, const 
   return v / t;
 }
 
+// local: of w in the cell's frame, above its horizon.
+float strata_pdf(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p, const Vec3& local) {
+  if (fields.structure != Structure::adaptive) return patch_density(field.nodes, field.cells[cell].root, local);
+  float stretch;
+  const Vec3 at = centered(fields, field, cell, p, local, stretch);
+  return density(field.nodes, field.cells[cell].root, to_square(at)) * square_density(at) * stretch;
+}
+
+Vec3 sample_strata(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p, const Vec2& u, float& pdf) {
+  if (fields.structure != Structure::adaptive)
+    return fields.cells[cell].frame.to_world(sample_patch(field.nodes, field.cells[cell].root, u, pdf));
+  float over_square;
+  const Vec2 at = sample(field.nodes, field.cells[cell].root, u, over_square);
+  const Vec3 center = from_square(at), local = from_center(fields, field, cell, p, center, pdf);
+  pdf *= over_square * square_density(center);
+  return fields.cells[cell].frame.to_world(local);
+}
+
 }  // namespace
 
 const Field& Fields::of(Side side) const { return side == Side::camera ? q : w; }
@@ -36,11 +55,11 @@ size_t find_stratum(const Fields& fields, const Field& field, uint32_t cell, con
     const Patch at = patch_of(local);
     return 16 * size_t(field.nodes[field.cells[cell].root].child(at.zone)) + size_t(at.segment);
   }
-  return find_stratum(field, cell, to_square(local));
+  return find_stratum(field, field.cells[cell], to_square(local));
 }
 
-size_t find_stratum(const Field& field, uint32_t cell, Vec2 at) {
-  uint32_t node = field.cells[cell].root;
+size_t find_stratum(const Field& field, const FieldCell& cell, Vec2 at) {
+  uint32_t node = cell.root;
   int i = descend(at);
   while (field.nodes[node].is_divided(i)) {
     node = field.nodes[node].child(i);
@@ -61,25 +80,29 @@ Vec3 centered(const Fields& fields, const Field& field, uint32_t cell, const Vec
 float pdf(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p, const Vec3& w) {
   const Vec3 local = fields.cells[cell].frame.to_local(w);
   if (!(local.z > 0)) return 0;
-  if (fields.structure != Structure::adaptive) return patch_density(field.nodes, field.cells[cell].root, local);
-  float stretch;
-  const Vec3 at = centered(fields, field, cell, p, local, stretch);
-  return density(field.nodes, field.cells[cell].root, to_square(at)) * square_density(at) * stretch;
+  const float strata = strata_pdf(fields, field, cell, p, local);
+  const Opening o = opening(fields, field, cell, p);
+  return o.share > 0 ? (1 - o.share) * strata + o.share * pdf(fields, field, o, p, w) : strata;  // (G11)
 }
 
-Vec3 sample(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p, const Vec2& u, float& pdf) {
-  if (fields.structure != Structure::adaptive)
-    return fields.cells[cell].frame.to_world(sample_patch(field.nodes, field.cells[cell].root, u, pdf));
-  float over_square;
-  const Vec2 at = sample(field.nodes, field.cells[cell].root, u, over_square);
-  const Vec3 center = from_square(at), local = from_center(fields, field, cell, p, center, pdf);
-  pdf *= over_square * square_density(center);
-  return fields.cells[cell].frame.to_world(local);
+Vec3 sample(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p, Vec2 u, float& density) {
+  const Opening o = opening(fields, field, cell, p);
+  if (u.x < o.share) {
+    u.x = std::min(u.x / o.share, one_minus_epsilon);
+    const Vec3 w = sample(fields, field, o, p, u);
+    density = pdf(fields, field, cell, p, w);
+    return w;
+  }
+  if (o.share > 0) u.x = std::min((u.x - o.share) / (1 - o.share), one_minus_epsilon);
+  const Vec3 w = sample_strata(fields, field, cell, p, u, density);
+  if (o.share > 0) density = (1 - o.share) * density + o.share * pdf(fields, field, o, p, w);
+  return w;
 }
 
 size_t bytes(const Fields& f) {
   const auto of = [](const Field& x) {
-    return x.cells.size() * sizeof(FieldCell) + x.nodes.size() * (sizeof(StrataNode) + 32 * sizeof(Short));
+    return (x.cells.size() + x.portals.size()) * sizeof(FieldCell) +
+           x.nodes.size() * (sizeof(StrataNode) + 32 * sizeof(Short));
   };
   return f.table.slots.size() * sizeof(CellTable::Slot) + f.table.probes.size() * sizeof(Probe) +
          f.cells.size() * sizeof(Cell) + bytes(f.views) + of(f.q) + of(f.w) + of(f.disk) + bytes(f.lights) +

@@ -1,7 +1,10 @@
 #include "ajar/field/learn.h"
 
+#include <span>
+
 #include "ajar/core/frame.h"
 #include "ajar/core/parallel.h"
+#include "ajar/field/portals.h"
 #include "ajar/field/probes.h"
 #include "fixed.h"
 #include "tree.h"
@@ -39,6 +42,52 @@ float nearness(const Fields& fields, const Work& w, uint32_t cell) {
   return std::min(old > 0 ? 0.5f * (old + now) : now, 1 / fields.table.edge(level_of(fields.cells[cell].key)));
 }
 
+// Through which portal a cell's directions are drawn, and how many: as many the more radiance comes through it than
+// from elsewhere. More than come through it by themselves: from there on the other side's subpaths know the way, and
+// hardly any path finds through. (G11)
+void learn_opening(const Work& w, uint32_t cell, FieldCell& next) {
+  constexpr double most_drawn = 0.6, least_carried = 1e-3, usual_contrast = 2;
+  const size_t n = w.field->portals.size() / 2;
+  if (n == 0) return;
+  const int64_t* const sums = &w.tallies->through[cell * (2 + 2 * n)];
+  if (sums[1] == 0) return;
+  uint32_t best = none;
+  double most = 0;
+  for (uint32_t k = 0; k < n; ++k) {
+    const int64_t* const s = sums + 2 + 2 * k;
+    if (double(s[1]) < least_carried * double(sums[1])) continue;
+    const double contrast = double(s[1]) / double(s[0]) * (double(sums[0]) / double(sums[1]));
+    const double share = most_drawn * (1 - usual_contrast / std::max(contrast, usual_contrast));
+    if (share > most) most = share, best = k;
+  }
+  next.through = next.portal == best ? 0.5f * (next.through + float(most)) : float(most);
+  next.portal = next.through > 0.01f ? best : none;
+}
+
+// Portals stay where they are from this lesson on.
+constexpr uint32_t settled = 8;
+
+// Strata of a portal: there are few, so they may be fine. What a portal held before it moved is a first guess.
+FieldCell learn_portal(Work& w, const FieldCell& old, bool moved, Trees& out) {
+  LearnOptions fine = *w.options;
+  fine.divide_stratum = 1 / 256.0f;
+  FieldCell next = old;
+  w.tree.clear();
+  take(*w.field, *w.tallies, fine.forget, old.root, w.tree);
+  if (moved)
+    for (TreeNode& n : w.tree)
+      for (float& weight : n.weight) weight *= 0.1f;
+  const float bare = weigh(w.tree, Structure::adaptive, 0);
+  next.mix = bare > 0 ? mix_for(fine, evidence(w.tree)) : 0;
+  const float floor = 0.03f * bare / pi;
+  if (const float total = weigh(w.tree, Structure::adaptive, floor); total > 0) {
+    reshape(w.tree, total, fine, true);
+    weigh(w.tree, Structure::adaptive, floor);
+  }
+  next.root = append(out, w.tree, Structure::adaptive);
+  return next;
+}
+
 FieldCell learn_cell(Work& w, uint32_t cell, double area, double paths, Trees& out) {
   const FieldCell& old = w.field->cells[cell];
   const Tallies& t = *w.tallies;
@@ -62,13 +111,24 @@ FieldCell learn_cell(Work& w, uint32_t cell, double area, double paths, Trees& o
   next.mix = bare > 0 ? mix_for(*w.options, known) : 0;
   const float seen = float(double(t.visits[cell]) / (area * paths));
   if (w.structure == Structure::adaptive) next.near = nearness(*w.fields, w, cell);
+  learn_opening(w, cell, next);
   next.visits = old.visits > 0 ? 0.5f * (old.visits + seen) : seen;
   return next;
 }
 
+// Adds trees, and shifts the roots of the cells that they are of.
+void join(Field& to, Trees trees, std::span<FieldCell> cells) {
+  const uint32_t shift = uint32_t(to.nodes.size());
+  for (StrataNode& node : trees.nodes) node.children += shift;
+  for (FieldCell& c : cells) c.root += shift;
+  to.nodes.insert(to.nodes.end(), trees.nodes.begin(), trees.nodes.end());
+  to.mean.insert(to.mean.end(), trees.mean.begin(), trees.mean.end());
+  to.weight.insert(to.weight.end(), trees.weight.begin(), trees.weight.end());
+}
+
 // structure: of its strata. Where its cells are not those of the fields, they have no size.
 Field learn_field(const Fields& fields, const Field& field, Structure structure, const Tallies& tallies, double paths,
-                  const LearnOptions& options) {
+                  const LearnOptions& options, const std::vector<bool>& moved = {}) {
   constexpr uint32_t block = 64;
   const uint32_t n = uint32_t(field.cells.size()), blocks = (n + block - 1) / block;
   const bool divides = is_left(fields, for_strata, options);
@@ -84,14 +144,13 @@ Field learn_field(const Fields& fields, const Field& field, Structure structure,
       next.cells[c] = learn_cell(work, c, edge * edge, paths, trees[b]);
     }
   });
-  for (uint32_t b = 0; b < blocks; ++b) {
-    const uint32_t shift = uint32_t(next.nodes.size());
-    for (StrataNode& node : trees[b].nodes) node.children += shift;
-    for (uint32_t c = b * block; c < std::min(n, (b + 1) * block); ++c) next.cells[c].root += shift;
-    next.nodes.insert(next.nodes.end(), trees[b].nodes.begin(), trees[b].nodes.end());
-    next.mean.insert(next.mean.end(), trees[b].mean.begin(), trees[b].mean.end());
-    next.weight.insert(next.weight.end(), trees[b].weight.begin(), trees[b].weight.end());
-  }
+  for (uint32_t b = 0; b < blocks; ++b)
+    join(next, std::move(trees[b]), std::span(next.cells).subspan(b * block, std::min(block, n - b * block)));
+  Work work{Structure::adaptive, fields.rule, &fields, &field, &tallies, &options, divides, {}};
+  Trees of_portals;
+  for (size_t i = 0; i < field.portals.size(); ++i)
+    next.portals.push_back(learn_portal(work, field.portals[i], moved[i / 2], of_portals));
+  join(next, std::move(of_portals), next.portals);
   return next;
 }
 
@@ -170,6 +229,20 @@ void learn_choices(const Fields& fields, const Training& training, const LearnOp
   next.lights = learn_lights(tree, fields.lights, training.lights, rules, cells);
 }
 
+// To where paths through them are closest together, as long as little is known; which moved. (G13)
+std::vector<bool> move_portals(const Training& training, Fields& next) {
+  std::vector<bool> moved(next.table.portals.size());
+  for (size_t i = 0; i < next.lines.size(); ++i)
+    next.lines[i] += (double(training.q.lines[i]) + double(training.w.lines[i])) * value_step;
+  for (size_t k = 0; k < moved.size() && next.generation <= settled; ++k) {
+    Portal& p = next.table.portals[k];
+    const float to = narrowest(p, &next.lines[k * line_sums], portal_margin * next.table.width);
+    moved[k] = std::abs(to - p.center[p.axis]) > p.radius / 256;
+    if (moved[k]) p.center[p.axis] = to;
+  }
+  return moved;
+}
+
 }  // namespace
 
 Fields start_fields(const Scene& scene, double pixels, const LearnOptions& options) {
@@ -194,8 +267,10 @@ Fields learn(const Fields& fields, const Training& training, const Sightings& si
   next.generation = fields.generation + 1;
   next.table = fields.table;
   next.cells = fields.cells;
-  next.q = learn_field(fields, fields.q, fields.structure, training.q, paths, options);
-  next.w = learn_field(fields, fields.w, fields.structure, training.w, paths, options);
+  next.lines = fields.lines;
+  const std::vector<bool> moved = move_portals(training, next);
+  next.q = learn_field(fields, fields.q, fields.structure, training.q, paths, options, moved);
+  next.w = learn_field(fields, fields.w, fields.structure, training.w, paths, options, moved);
   next.disk = learn_field(fields, fields.disk, Structure::adaptive, training.disk, paths, options);
   next.lights = fields.lights, next.starts = fields.starts;
   if (lights && !lights->nodes.empty()) learn_choices(fields, training, options, *lights, next);
@@ -221,6 +296,8 @@ Fields doubt(const Fields& fields, const std::vector<Box>& moved, float kept, co
     if (std::none_of(moved.begin(), moved.end(), [&](const Box& box) { return overlap(box, cube); })) continue;
     for (Field* field : {&next.q, &next.w}) doubt_cell(*field, field->cells[c], kept, options);
   }
+  for (size_t i = 0; i < next.q.portals.size() && !moved.empty(); ++i)
+    for (Field* field : {&next.q, &next.w}) doubt_cell(*field, field->portals[i], kept, options);
   return next;
 }
 

@@ -6,12 +6,13 @@
 #include <bit>
 
 #include "ajar/core/error.h"
+#include "ajar/field/portals.h"
 #include "ajar/scene/light.h"
 
 namespace ajar {
 namespace {
 
-constexpr FileKind fields_kind = {"AJARfd07", "file of fields", "make one with --save-fields",
+constexpr FileKind fields_kind = {"AJARfd08", "file of fields", "make one with --save-fields",
                                   "learn the fields again with --save-fields"};
 
 bool is_amount(float x) { return x >= 0 && x < infinity; }
@@ -25,19 +26,25 @@ void frame_members(Io& io, Part& f) {
 template <class Io, class Part>
 void cell_members(Io& io, Part& c) {
   io.value(c.root), io.value(c.direct), io.value(c.total), io.value(c.mix), io.value(c.visits), io.value(c.near);
+  io.value(c.portal), io.value(c.through);
 }
 template <class Io, class Part>
 void tallies_members(Io& io, Part& t) {
   io.array(t.value), io.array(t.weight), io.array(t.direct), io.array(t.directs), io.array(t.visits);
-  io.array(t.held), io.array(t.nearness);
+  io.array(t.held), io.array(t.nearness), io.array(t.through), io.array(t.lines);
 }
-static_assert(sizeof(FieldCell) == 24 && sizeof(StrataNode) == 40 && sizeof(Cell) == 64 && sizeof(Sighting) == 32 &&
-                  sizeof(Probe) == 28,
+template <class Io, class Part>
+void portal_members(Io& io, Part& p) {
+  io.value(p.axis), io.value(p.wall), io.value(p.center), io.value(p.radius);
+}
+static_assert(sizeof(FieldCell) == 32 && sizeof(StrataNode) == 40 && sizeof(Cell) == 64 && sizeof(Sighting) == 32 &&
+                  sizeof(Probe) == 28 && sizeof(Portal) == 24,
               "a member was added or taken away: list it here and raise the versions of the files");
 
 void write(Writer& w, const Field& f) {
   w.value(f.unit);
-  for (const FieldCell& c : f.cells) cell_members(w, c);
+  for (const std::vector<FieldCell>* cells : {&f.cells, &f.portals})
+    for (const FieldCell& c : *cells) cell_members(w, c);
   w.value(uint64_t(f.nodes.size()));
   for (const StrataNode& n : f.nodes) w.value(n.before), w.value(n.divided), w.value(n.children);
   w.bytes(f.mean.data(), f.mean.size() * sizeof(Short));
@@ -80,19 +87,21 @@ bool claim(const std::vector<StrataNode>& nodes, uint32_t root, std::vector<bool
   return true;
 }
 
-bool is_sound(const FieldCell& c) {
+bool is_sound(const FieldCell& c, size_t portals) {
   return is_amount(c.direct) && is_amount(c.total) && c.mix >= 0 && c.mix < 1 && is_amount(c.visits) &&
-         is_amount(c.near);
+         is_amount(c.near) && (c.portal == none || c.portal < portals) && c.through >= 0 && c.through <= 1;
 }
 
-void read(Reader& r, Structure structure, size_t cells, Field& f) {
+// portals: of the table.
+void read(Reader& r, Structure structure, size_t cells, size_t portals, Field& f) {
   r.value(f.unit);
   r.require(f.unit > 0 && f.unit < double(infinity));
-  f.cells.resize(cells);
-  for (FieldCell& c : f.cells) {
-    cell_members(r, c);
-    r.require(is_sound(c));
-  }
+  f.cells.resize(cells), f.portals.resize(2 * portals);
+  for (std::vector<FieldCell>* list : {&f.cells, &f.portals})
+    for (FieldCell& c : *list) {
+      cell_members(r, c);
+      r.require(is_sound(c, portals));
+    }
   f.nodes.resize(r.count(sizeof(StrataNode) - 2 + 32 * sizeof(Short)));
   for (StrataNode& n : f.nodes) {
     r.value(n.before), r.value(n.divided), r.value(n.children);
@@ -107,6 +116,7 @@ void read(Reader& r, Structure structure, size_t cells, Field& f) {
   std::vector<bool> claimed(f.nodes.size());
   for (const FieldCell& c : f.cells)
     r.require(claim(f.nodes, c.root, claimed) && (structure == Structure::adaptive || is_patches(f.nodes, c.root)));
+  for (const FieldCell& c : f.portals) r.require(claim(f.nodes, c.root, claimed));
 }
 
 // regions: of the fields. Joins that are free are among those that were tried.
@@ -180,12 +190,26 @@ void read(Reader& r, const Field& f, Tallies& t) {
   const size_t strata = 16 * f.nodes.size(), cells = f.cells.size();
   r.require(t.value.size() == strata && t.weight.size() == strata && t.direct.size() == cells &&
             t.directs.size() == cells && t.visits.size() == cells && t.held.size() == cells &&
-            t.nearness.size() == cells);
+            t.nearness.size() == cells && t.lines.size() == f.portals.size() / 2 * line_sums &&
+            t.through.size() == (f.portals.empty() ? 0 : cells * (2 + f.portals.size())));
 }
 
 template <class T>
 uint64_t sum_of(const std::vector<T>& v, uint64_t sum) {
   return checksum(v.data(), v.size() * sizeof(T), sum);
+}
+
+void read_portals(Reader& r, CellTable& table, std::vector<double>& lines) {
+  table.portals.resize(r.count(sizeof(Portal)));
+  r.require(table.portals.size() <= most_portals);
+  for (Portal& p : table.portals) {
+    portal_members(r, p);
+    r.require(p.axis >= 0 && p.axis < 3 && std::isfinite(p.wall) && is_finite(p.center) && p.radius > 0 &&
+              p.radius < infinity);
+  }
+  r.array(lines);
+  r.require(lines.size() == line_sums * table.portals.size() &&
+            std::all_of(lines.begin(), lines.end(), [](double x) { return std::isfinite(x); }));
 }
 
 // Cuts lead to later cuts or to compartments that a key has room for, so that every way through them ends.
@@ -212,6 +236,9 @@ void write(Writer& w, const Fields& fields) {
   w.value(uint64_t(fields.table.probes.size()));
   for (const Probe& p : fields.table.probes) w.value(p.p), w.value(p.n), w.value(p.axis);
   w.array(fields.table.cuts), w.array(fields.table.compartments);
+  w.value(uint64_t(fields.table.portals.size()));
+  for (const Portal& p : fields.table.portals) portal_members(w, p);
+  w.array(fields.lines);
   // The table's divided marks go with the cells; the table itself is made anew.
   std::vector<char> divided(fields.cells.size());
   for (const CellTable::Slot& s : fields.table.slots)
@@ -243,6 +270,7 @@ void read(Reader& r, Fields& fields) {
     r.require(is_finite(p.p) && is_finite(p.n) && p.axis < 3);
   }
   read_compartments(r, fields.table);
+  read_portals(r, fields.table, fields.lines);
   fields.cells.resize(r.count(sizeof(CellKey)));
   for (uint32_t i = 0; i < fields.cells.size(); ++i) {
     Cell& c = fields.cells[i];
@@ -254,15 +282,16 @@ void read(Reader& r, Fields& fields) {
     insert(fields.table, c.key, i);
     if (divided) set_divided(fields.table, c.key);
   }
-  read(r, fields.structure, fields.cells.size(), fields.q);
-  read(r, fields.structure, fields.cells.size(), fields.w);
+  const size_t portals = fields.table.portals.size();
+  read(r, fields.structure, fields.cells.size(), portals, fields.q);
+  read(r, fields.structure, fields.cells.size(), portals, fields.w);
   r.value(fields.regions);
   read(r, fields.regions, fields.views);
   read(r, fields.cells.size(), LightRules{}.most, fields.lights);
   read(r, 1, most_starts, fields.starts);
   const size_t disks = r.count(sizeof(FieldCell));
   r.require(disks <= most_regions_of_sky);
-  read(r, Structure::adaptive, disks, fields.disk);
+  read(r, Structure::adaptive, disks, 0, fields.disk);
 }
 
 void write(Writer& w, const Training& training) {

@@ -1,6 +1,7 @@
 #include "ajar/field/training.h"
 
 #include "ajar/core/sampler.h"
+#include "ajar/field/portals.h"
 #include "fixed.h"
 
 namespace ajar {
@@ -22,6 +23,8 @@ void resize(Tallies& t, const Field& f) {
   t.nearness.assign(f.cells.size(), 0);
   t.directs.assign(f.cells.size(), 0);
   t.visits.assign(f.cells.size(), 0);
+  t.lines.assign(f.portals.size() / 2 * line_sums, 0);
+  t.through.assign(f.portals.empty() ? 0 : f.cells.size() * (2 + f.portals.size()), 0);
 }
 
 // What is brightest decides how far away things are. (G8)
@@ -30,6 +33,28 @@ void add_distance(const Fields& fields, const Field& field, Tallies& tallies, ui
   const double held = std::min(double(r.weight), largest_weight) * r.value * above / field.unit;
   add(tallies.held[cell], to_fixed(held, value_step));
   add(tallies.nearness[cell], to_fixed(held * fields.table.width / r.distance, value_step));
+}
+
+// What would have come through a portal, had nothing been in the way before it, counts as nothing.
+void add_crossings(const Fields& fields, const Field& field, Tallies& tallies, uint32_t cell, const Record& r) {
+  const uint32_t n = uint32_t(field.portals.size() / 2);
+  const double weight = std::min(double(r.weight), largest_weight), carried = weight * r.value / field.unit;
+  int64_t* const sums = tallies.through.data() + size_t(cell) * (2 + 2 * n);
+  const auto count = [&](uint32_t at) {
+    add(sums[at], to_fixed(weight, weight_step)), add(sums[at + 1], to_fixed(carried, value_step));
+  };
+  count(0);
+  for (uint32_t k = 0; k < n; ++k) {
+    const Portal& portal = fields.table.portals[k];
+    Crossing at;
+    if (!cross(portal, k, r.p, r.w, at)) continue;
+    const float margin = portal_margin * fields.table.width / std::abs(r.w[portal.axis]);
+    const bool through = at.distance > margin && at.distance + margin < r.distance;
+    add_record(field, tallies, find_stratum(field, field.portals[at.cell], at.square), through ? r.value : 0, r.weight);
+    if (!through) continue;
+    count(2 + 2 * k);
+    if (carried > 0) record_line(portal, r.p, r.w, std::sqrt(carried), tallies.lines.data() + k * line_sums);
+  }
 }
 
 }  // namespace
@@ -53,10 +78,11 @@ void record(const Fields& fields, const Field& field, Tallies& tallies, uint32_t
   const size_t stratum = find_stratum(fields, field, cell, centered(fields, field, cell, r.p, local, density));
   add_record(field, tallies, stratum, r.value, r.weight);
   if (r.value > 0) add_distance(fields, field, tallies, cell, r);
+  if (!field.portals.empty()) add_crossings(fields, field, tallies, cell, r);
 }
 
 void record_square(const Field& field, Tallies& tallies, uint32_t cell, const Vec2& at, float value, float weight) {
-  if (weight > 0 && value >= 0) add_record(field, tallies, find_stratum(field, cell, at), value, weight);
+  if (weight > 0 && value >= 0) add_record(field, tallies, find_stratum(field, field.cells[cell], at), value, weight);
 }
 
 void record_direct(const Field& field, Tallies& tallies, uint32_t cell, float value) {

@@ -6,6 +6,7 @@
 #include "ajar/core/parallel.h"
 #include "ajar/core/sampler.h"
 #include "ajar/core/warp.h"
+#include "ajar/field/portals.h"
 #include "ajar/scene/bsdf.h"
 #include "ajar/scene/geometry.h"
 #include "ajar/scene/light.h"
@@ -169,6 +170,7 @@ void cut_along_walls(const Scene& scene, const Accel& accel, CellTable& table) {
       table.cuts.push_back(k);
     }
   }
+  table.portals = find_portals(table.cuts, scene.center, scene.radius, table.width);
 }
 
 }  // namespace ajar

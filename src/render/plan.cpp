@@ -66,13 +66,13 @@ Trial run_trial(const Scene& scene, const Accel& accel, RenderOptions options, c
   options.learn.train = 0;
   RenderState state = start_render(scene, options);
   CellTable& table = state.learning.fields.table;
-  table.cuts = walls.cuts, table.compartments = walls.compartments;
+  table.cuts = walls.cuts, table.compartments = walls.compartments, table.portals = walls.portals;
   if (!c.guided) state.film.dropped = blind_generations;
   render(scene, accel, options, state, [&](const RenderState& now) {
     if (now.film.chunks == 0 && now.film.dropped > 0 && now.film.passes > sight.passes.size()) look(now.film, sight);
     return monitor(now);
   });
-  if (c.guided) walls.cuts = table.cuts, walls.compartments = table.compartments;
+  if (c.guided) walls.cuts = table.cuts, walls.compartments = table.compartments, walls.portals = table.portals;
   const Counters& n = state.stats.counters;
   const double rays = double(n.camera_rays + n.light_rays + n.shadow_rays);
   Trial t;

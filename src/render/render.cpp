@@ -8,6 +8,7 @@
 
 #include "ajar/core/error.h"
 #include "ajar/core/parallel.h"
+#include "ajar/field/portals.h"
 #include "ajar/field/walls.h"
 #include "job.h"
 
@@ -365,6 +366,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   Fields& fields = state.learning.fields;
   if (job.learning && fields.structure == Structure::adaptive && fields.table.compartments.empty())
     threads.run([&] { cut_along_walls(scene, accel, fields.table); });
+  if (job.learning && add_portals(fields)) state.learning.training = start_training(fields);
   Batch batch;
   Vpls vpls;
   if (integrator.vpls) vpls = make_vpls(scene, film, integrator.guided);

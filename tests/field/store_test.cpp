@@ -11,6 +11,7 @@
 #include "ajar/core/sampler.h"
 #include "ajar/core/warp.h"
 #include "ajar/field/learn.h"
+#include "ajar/field/portals.h"
 #include "ajar/scene/build.h"
 #include "kit/stage.h"
 
@@ -28,6 +29,8 @@ Fields learned(const Scene& scene, int generations, Structure structure = Struct
   LearnOptions options;
   options.divide_cell = 40, options.structure = structure, options.rule = Rule::returned;
   Fields fields = start_fields(scene, 64, options);
+  if (structure == Structure::adaptive) fields.table.portals = {{0, 0.2f, {0.3f, 0, 0}, 3}};
+  add_portals(fields);
   for (int g = 0; g < generations; ++g) {
     Training training = start_training(fields);
     Sightings sightings;
@@ -246,6 +249,14 @@ TEST_F(Store, WhatCannotBeIsAnError) {
          f.table.compartments.assign(2197, ~0);
          f.table.cuts = {{0, 0, ~0, ~16}};
        }},
+      {"a portal of no axis", [](Fields& f, uint32_t, uint32_t) { f.table.portals[0].axis = 3; }},
+      {"a portal of no size", [](Fields& f, uint32_t, uint32_t) { f.table.portals[0].radius = 0; }},
+      {"a portal without strata", [](Fields& f, uint32_t, uint32_t) { f.w.portals.pop_back(); }},
+      {"a portal that is not there", [](Fields& f, uint32_t i, uint32_t) { f.q.cells[i].portal = 1; }},
+      {"more than all drawn through it", [](Fields& f, uint32_t i, uint32_t) { f.q.cells[i].through = 1.5f; }},
+      {"its strata at no place", [](Fields& f, uint32_t, uint32_t) { f.q.portals[0].root = none; }},
+      {"lines of no portal", [](Fields& f, uint32_t, uint32_t) { f.lines.push_back(0); }},
+      {"lines of NaN", [](Fields& f, uint32_t, uint32_t) { f.lines[0] = std::nan(""); }},
       {"joins tried less than never", [](Fields& f, uint32_t, uint32_t) { f.views.tried[1] = -1; }},
       {"infinitely many joins", [](Fields& f, uint32_t, uint32_t) { f.views.tried[1] = infinity; }},
       {"free joins of NaN", [](Fields& f, uint32_t, uint32_t) { f.views.seen[1] = std::nanf(""); }},

@@ -27,6 +27,15 @@ struct CellCut {
   int32_t axis = 0, below = ~0, above = ~0;
 };
 
+/// A disk beside a wall, across all of the scene: what passes the wall passes the disk. It lies where paths through the
+/// wall are closest together.
+struct Portal {
+  int32_t axis = 0;  ///< normal to it
+  float wall = 0;    ///< where the wall is along the axis
+  Vec3 center{0};
+  float radius = 1;
+};
+
 /// A point on a surface, with a hemisphere on either side of it.
 struct Probe {
   Vec3 p{0}, n{0, 0, 1};
@@ -45,6 +54,7 @@ struct CellTable {
   std::vector<Slot> slots;  ///< a power of two of them
   std::vector<CellCut> cuts;
   std::vector<int32_t> compartments;  ///< per cube of level 0: its first cut, or ~0; empty: nothing is cut
+  std::vector<Portal> portals;        ///< of the walls that cut the most
   std::vector<Probe> probes;  ///< not empty: cells are theirs, not cubes; a kd-tree: the middle of a range divides it
   size_t used = 0;
 

@@ -22,15 +22,18 @@ struct FieldCell {
   float mix = 0;     ///< g of (G4) for a diffuse surface: how much the strata are trusted
   float visits = 0;  ///< vertices of subpaths of the side that it guides, per area of the cell and path
   float near = 0;    ///< 1 / R of (G7): reciprocal of how far away the things are that its strata hold [1/m]
+  uint32_t portal = none;  ///< through which the most arrives of what comes through one (CellTable::portals)
+  float through = 0;       ///< h of (G11): share of the directions that are drawn through it
 };
 
 /// One learned field: strata of all cells. Hot: what sampling reads. mean and weight stand beside the nodes.
 struct Field {
   std::vector<FieldCell> cells;
   std::vector<StrataNode> nodes;
-  std::vector<Short> mean;    ///< 16 per node: what the stratum's field is
-  std::vector<Short> weight;  ///< 16 per node: how much evidence stands behind it, in records of typical weight
-  double unit = 1;            ///< a typical value, from the scene's power and size
+  std::vector<Short> mean;         ///< 16 per node: what the stratum's field is
+  std::vector<Short> weight;       ///< 16 per node: how much evidence stands behind it, in records of typical weight
+  std::vector<FieldCell> portals;  ///< two for each portal, of what goes down and up its axis: strata of its disk
+  double unit = 1;                 ///< a typical value, from the scene's power and size
 };
 
 struct Cell {
@@ -65,11 +68,12 @@ struct Fields {
   std::vector<Cell> cells;
   Field q, w;
   Views views;
-  LearnedLights lights;     ///< V: a cut for every cell; none: lights are not learned
-  LearnedLights starts;     ///< where light subpaths start: one cut
-  Field disk;               ///< importance over the disk across the scene, for each region of the sky (LightTree)
-  uint32_t regions = 0;     ///< top-level cells
-  uint32_t generation = 0;  ///< how often it was learned
+  std::vector<double> lines;  ///< per portal: line_sums (portals.h) of all lessons, where portals are
+  LearnedLights lights;       ///< V: a cut for every cell; none: lights are not learned
+  LearnedLights starts;       ///< where light subpaths start: one cut
+  Field disk;                 ///< importance over the disk across the scene, for each region of the sky (LightTree)
+  uint32_t regions = 0;       ///< top-level cells
+  uint32_t generation = 0;    ///< how often it was learned
 
   const Field& of(Side side) const;
 };
@@ -77,17 +81,17 @@ struct Fields {
 /// Where mean and weight of the stratum of a local direction above the cell's horizon are.
 size_t find_stratum(const Fields& fields, const Field& field, uint32_t cell, const Vec3& local);
 /// The same of a point of the unit square.
-size_t find_stratum(const Field& field, uint32_t cell, Vec2 square);
+size_t find_stratum(const Field& field, const FieldCell& cell, Vec2 square);
 /// A direction at a point of a cell as the cell's centre has it, in its frame: towards where the ray leaves the sphere
 /// of radius R about the centre; z > 0 stays so. density: solid angle at the centre per solid angle at the point. (G7)
 Vec3 centered(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p, const Vec3& local,
               float& density);
-/// Density per solid angle of the field's strata in a cell at point p of it towards unit world direction w: 0 below the
-/// cell's horizon.
+/// Density per solid angle of a field in a cell at point p of it towards unit world direction w, by its strata and
+/// through its portal (G11); 0 below the cell's horizon.
 float pdf(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p, const Vec3& w);
-/// Draws a unit world direction at p in proportion to the field times the cosine at the cell (grid: to the field);
-/// leaves its density per solid angle.
-Vec3 sample(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p, const Vec2& u, float& pdf);
+/// Draws a unit world direction at p: by the strata in proportion to the field times the cosine at the cell (grid: to
+/// the field), or through the portal. Leaves its density per solid angle: 0 where it fell below the cell's horizon.
+Vec3 sample(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p, Vec2 u, float& density);
 /// Bytes of all that is learned.
 size_t bytes(const Fields& fields);
 

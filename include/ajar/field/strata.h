@@ -84,6 +84,8 @@ Vec3 sample_patch(const std::vector<StrataNode>& nodes, uint32_t root, const Vec
 
 /// Density over the unit square of the tree under node root.
 float density(const std::vector<StrataNode>& nodes, uint32_t root, const Vec2& at);
+/// The same per area of the unit disk, which was stretched to the square.
+float disk_density(const std::vector<StrataNode>& nodes, uint32_t root, const Vec2& square);
 /// Draws a point of the unit square; u in [0,1)^2. Leaves its density.
 Vec2 sample(const std::vector<StrataNode>& nodes, uint32_t root, const Vec2& u, float& density);
 

@@ -23,6 +23,9 @@ struct Tallies {
   std::vector<int64_t> direct;           ///< per cell
   std::vector<int64_t> held, nearness;   ///< per cell: the sums of (G8), of 1 and of 1 / distance
   std::vector<int64_t> directs, visits;  ///< per cell: how many
+  std::vector<int64_t> lines;            ///< per portal: line_sums (portals.h)
+  std::vector<int64_t> through;          ///< per cell: weight, weight times value of all records; of those through each
+                                         ///< portal
 };
 
 struct Training {

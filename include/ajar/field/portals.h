@@ -1,0 +1,45 @@
+// Enters: walls that cut cells (walls.h), a field's strata over the disks in their planes.
+// Leaves: directions towards where a wall lets light, or importance, through: what one cell finds there serves all.
+#pragma once
+
+#include "ajar/field/fields.h"
+
+namespace ajar {
+
+inline constexpr size_t most_portals = 2;
+/// What ends within so many widths of a cube of level 0 from a portal's plane does not count as having come through.
+inline constexpr float portal_margin = 0.25f;
+
+/// Planes that the most cuts share, as disks across the scene's sphere; width: of the cubes that were cut.
+std::vector<Portal> find_portals(const std::vector<CellCut>& cuts, const Vec3& center, float radius, float width);
+/// Gives both fields strata for the portals of their table, that know nothing. False where they have them already.
+bool add_portals(Fields& fields);
+
+/// Where a ray passes through a portal's plane.
+struct Crossing {
+  uint32_t cell = none;  ///< among Field::portals
+  Vec2 square{0};        ///< on the disk, as the square of its strata (G1)
+  float distance = 0;    ///< from the ray's origin
+};
+/// Paths through an opening as lines, to find where they are closest together: sums of (G13), in fixed point.
+inline constexpr size_t line_sums = 11;
+/// p, w: a ray through the portal; weight: what it carries.
+void record_line(const Portal& portal, const Vec3& p, const Vec3& w, double weight, int64_t* sums);
+/// Where on its axis, so far from the wall at most, lines through a portal are closest together.
+float narrowest(const Portal& portal, const double* sums, float most);
+
+/// w: unit. False where the ray misses the disk.
+bool cross(const Portal& portal, uint32_t number, const Vec3& p, const Vec3& w, Crossing& out);
+
+/// The cell's portal, as it is seen from p.
+struct Opening {
+  uint32_t portal = none, cell = none;
+  float share = 0;  ///< of the field's directions that are drawn through it: trust times h of (G11)
+};
+Opening opening(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p);
+/// Density per solid angle with which a direction is drawn through it. (G12)
+float pdf(const Fields& fields, const Field& field, const Opening& opening, const Vec3& p, const Vec3& w);
+/// u in [0,1)^2.
+Vec3 sample(const Fields& fields, const Field& field, const Opening& opening, const Vec3& p, const Vec2& u);
+
+}  // namespace ajar

@@ -1,0 +1,145 @@
+#include "ajar/field/portals.h"
+
+#include <algorithm>
+#include <atomic>
+
+#include "fixed.h"
+#include "tree.h"
+
+namespace ajar {
+namespace {
+
+// Cuts of one plane lie within this share of a cube's width of each other; so many make a wall.
+constexpr float one_plane = 1 / 8.0f;
+constexpr size_t least_cuts = 4;
+
+// What the axes beside a given one are.
+int first_beside(int axis) { return (axis + 1) % 3; }
+int second_beside(int axis) { return (axis + 2) % 3; }
+
+struct Wall {
+  size_t cuts = 0;
+  int axis = 0;
+  float at = 0;
+};
+
+// The plane of the most cuts, whose places are taken away with what is beside them; places: sorted, for each axis.
+Wall take_wall(std::vector<float> (&places)[3], float width) {
+  Wall best;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::vector<float>& x = places[axis];
+    for (size_t i = 0, j = 0; i < x.size(); ++i) {
+      while (j < x.size() && x[j] - x[i] <= one_plane * width) ++j;
+      if (j - i > best.cuts) best = {j - i, axis, x[(i + j) / 2]};
+    }
+  }
+  std::erase_if(places[best.axis], [&](float x) { return std::abs(x - best.at) <= 2 * one_plane * width; });
+  return best;
+}
+
+}  // namespace
+
+std::vector<Portal> find_portals(const std::vector<CellCut>& cuts, const Vec3& center, float radius, float width) {
+  std::vector<float> places[3];
+  for (const CellCut& c : cuts) places[c.axis].push_back(c.at);
+  for (std::vector<float>& x : places) std::sort(x.begin(), x.end());
+  std::vector<Portal> portals;
+  while (portals.size() < most_portals) {
+    const Wall wall = take_wall(places, width);
+    if (wall.cuts < least_cuts) break;
+    Vec3 middle = center;
+    middle[wall.axis] = wall.at;
+    const float disk = safe_sqrt(sqr(radius) - length2(middle - center));
+    if (disk > 0) portals.push_back({wall.axis, wall.at, middle, disk});
+  }
+  return portals;
+}
+
+bool add_portals(Fields& fields) {
+  const size_t n = 2 * fields.table.portals.size();
+  if (fields.q.portals.size() == n) return false;
+  fields.lines.assign(n / 2 * line_sums, 0);
+  for (Field* f : {&fields.q, &fields.w})
+    while (f->portals.size() < n) {
+      add_cell(*f, none, Structure::adaptive);
+      f->portals.push_back(f->cells.back());
+      f->cells.pop_back();
+    }
+  return true;
+}
+
+void record_line(const Portal& portal, const Vec3& p, const Vec3& w, double weight, int64_t* sums) {
+  const int a = portal.axis, beside[2] = {first_beside(a), second_beside(a)};
+  const double along = w[a], carried = weight * along * along;
+  const auto put = [&](size_t i, double x) {
+    const int64_t n = x < 0 ? -to_fixed(-x, value_step) : to_fixed(x, value_step);
+    std::atomic_ref<int64_t>(sums[i]).fetch_add(n, std::memory_order_relaxed);
+  };
+  put(0, carried);
+  for (size_t i = 0; i < 2; ++i) {
+    const int b = beside[i];
+    const double slope = w[b] / along, at = (p[b] - portal.center[b] + slope * (portal.wall - p[a])) / portal.radius;
+    const double powers[5] = {at, slope, at * at, at * slope, slope * slope};
+    for (size_t k = 0; k < 5; ++k) put(1 + 5 * i + k, carried * powers[k]);
+  }
+}
+
+float narrowest(const Portal& portal, const double* sums, float most) {
+  if (!(sums[0] > 0)) return portal.wall;
+  double best = infinity, found = 0;
+  constexpr int steps = 32;
+  for (int k = -steps; k <= steps; ++k) {
+    const double s = double(most) / portal.radius * k / steps;
+    double area = 1;
+    for (size_t i = 0; i < 2; ++i) {
+      const double* m = sums + 1 + 5 * i;
+      const double mean = (m[0] + s * m[1]) / sums[0];
+      area *= (m[2] + 2 * s * m[3] + s * s * m[4]) / sums[0] - mean * mean;  // (G13)
+    }
+    if (area < best) best = area, found = s * portal.radius;
+  }
+  return portal.wall + float(found);
+}
+
+bool cross(const Portal& portal, uint32_t number, const Vec3& p, const Vec3& w, Crossing& out) {
+  const int a = portal.axis;
+  out.distance = (portal.center[a] - p[a]) / w[a];
+  if (!(out.distance > 0 && out.distance < infinity)) return false;
+  const Vec3 v = (p + out.distance * w - portal.center) / portal.radius;
+  const Vec3 at(v[first_beside(a)], v[second_beside(a)], 0);
+  if (!(glm::dot(at, at) < 1)) return false;
+  out.cell = 2 * number + (w[a] > 0);
+  out.square = to_square(at);
+  return true;
+}
+
+Opening opening(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p) {
+  const FieldCell& c = field.cells[cell];
+  if (c.portal == none) return {};
+  const Portal& portal = fields.table.portals[c.portal];
+  const float across = portal.center[portal.axis] - p[portal.axis];
+  // In the plane directions do not tell places.
+  if (!(std::abs(across) > 1e-3f * portal.radius)) return {};
+  const uint32_t seen = 2 * c.portal + (across > 0);
+  return {c.portal, seen, c.through * field.portals[seen].mix};
+}
+
+float pdf(const Fields& fields, const Field& field, const Opening& opening, const Vec3& p, const Vec3& w) {
+  const Portal& portal = fields.table.portals[opening.portal];
+  Crossing at;
+  if (!cross(portal, opening.portal, p, w, at)) return 0;
+  const float on_disk = disk_density(field.nodes, field.portals[opening.cell].root, at.square);
+  return on_disk * sqr(at.distance / portal.radius) / std::abs(w[portal.axis]);  // (G12)
+}
+
+Vec3 sample(const Fields& fields, const Field& field, const Opening& opening, const Vec3& p, const Vec2& u) {
+  const Portal& portal = fields.table.portals[opening.portal];
+  float over_square;
+  const Vec3 at = from_square(sample(field.nodes, field.portals[opening.cell].root, u, over_square));
+  Vec3 to = portal.center - p;
+  to[first_beside(portal.axis)] += portal.radius * at.x;
+  to[second_beside(portal.axis)] += portal.radius * at.y;
+  return glm::normalize(to);
+}
+
+}  // namespace ajar
