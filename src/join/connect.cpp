@@ -83,6 +83,7 @@ bool join_vertices(std::span<const Vertex> light, double share, std::span<const 
   if (!(d2 > 0)) return false;
   const float distance = std::sqrt(d2);
   const Vec3 w = between / distance;
+  fetch(a.guide);
   const GuideEval ec = evaluate(c.guide, -w, Mode::radiance);
   if (is_black(ec.f_cos)) return false;
   const GuideEval ea = evaluate(a.guide, w, Mode::importance);

@@ -71,6 +71,8 @@ struct Promise {
 Promise promise(const Guide& guide, const Rgb& beta);
 /// Whether sample reads u_lobe.
 inline bool chooses(const Guide& guide) { return guide.bsdf.chooses || guide.mix > 0; }
+/// Asks memory for what evaluate is going to read of the fields.
+void fetch(const Guide& guide);
 GuideEval evaluate(const Guide& guide, const Vec3& wi, Mode mode);
 bool sample(const Guide& guide, float u_lobe, const Vec2& u, Mode mode, GuideSample& out);
 
