@@ -63,9 +63,12 @@ float breadth(const Bsdf& bsdf) {
 }
 
 const Field& field_of(const Guide& g) { return g.fields->of(g.side); }
-const Field& field_of_other(const Guide& g) { return g.fields->of(g.side == Side::camera ? Side::light : Side::camera); }
+const Field& field_of_other(const Guide& g) {
+  return g.fields->of(g.side == Side::camera ? Side::light : Side::camera);
+}
 
-// Most of the time that a field takes is spent waiting for memory: what look-ups in a cell begin with is asked for early.
+// Most of the time that a field takes is spent waiting for memory: what look-ups in a cell begin with is asked for
+// early.
 void fetch(const Fields& fields, const Field& field, uint32_t cell) {
   const Cell& c = fields.cells[cell];
   const StrataNode& root = field.nodes[field.cells[cell].root];
