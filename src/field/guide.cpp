@@ -8,6 +8,10 @@ bool sides_agree(const Guide& g, const Vec3& w, const Vec3& local) {
   return !g.bent || glm::dot(g.ng, w) * local.z > 0;
 }
 
+bool is_open(const Guide& g, const Vec3& w, const Vec3& local) {
+  return local.z != 0 && !g.blocked && sides_agree(g, w, local);
+}
+
 // |cos(ng, wi)| / |cos(ns, wi)| times the stored half: Veach's correction of the adjoint bsdf for bent normals.
 float adjoint(const Guide& g, const Vec3& wi, const Vec3& local, Mode mode) {
   if (!g.bent || mode == Mode::radiance) return 1;
@@ -100,9 +104,6 @@ float pdf_field(const Guide& g, const Vec3& wi) { return pdf(*g.fields, field_of
 float mix_in(const Bsdf& bsdf, float mix, float bsdf_pdf, float pdf_field) {
   return (1 - mix) * bsdf_pdf + mix * bsdf.opacity * pdf_field;
 }
-float mixed(const Guide& g, float bsdf_pdf, const Vec3& wi) {
-  return g.mix > 0 ? mix_in(g.bsdf, g.mix, bsdf_pdf, pdf_field(g, wi)) : bsdf_pdf;
-}
 float mixed_back(const Guide& g, float bsdf_pdf) {
   return g.mix_other > 0 ? mix_in(g.bsdf, g.mix_other, bsdf_pdf, g.back) : bsdf_pdf;
 }
@@ -121,7 +122,7 @@ bool sample_field(const Guide& g, const Vec2& u, Mode mode, GuideSample& out) {
   float pdf_field;
   out.wi = sample(*g.fields, field_of(g), g.cell, g.p, u, pdf_field);
   const Vec3 local = g.frame.to_local(out.wi);
-  if (!(pdf_field > 0) || local.z == 0 || g.blocked || !sides_agree(g, out.wi, local)) return false;
+  if (!(pdf_field > 0) || !is_open(g, out.wi, local)) return false;
   const BsdfEval e = eval(g.bsdf, g.wo_local, local, mode);
   out.pdf = mix_in(g.bsdf, g.mix, e.pdf, pdf_field);
   out.pdf_reverse = mixed_back(g, e.pdf_reverse);
@@ -168,11 +169,20 @@ Promise promise(const Guide& guide, const Rgb& beta) {
 }
 
 GuideEval evaluate(const Guide& guide, const Vec3& wi, Mode mode) {
+  GuideEval e = evaluate_bsdf(guide, wi, mode);
+  if (is_open(guide, wi, guide.frame.to_local(wi))) e.pdf = with_field(guide, wi, e.pdf);
+  return e;
+}
+
+GuideEval evaluate_bsdf(const Guide& guide, const Vec3& wi, Mode mode) {
   const Vec3 local = guide.frame.to_local(wi);
-  if (local.z == 0 || guide.blocked || !sides_agree(guide, wi, local)) return {};
+  if (!is_open(guide, wi, local)) return {};
   const BsdfEval e = eval(guide.bsdf, guide.wo_local, local, mode);
-  return {e.f * (std::abs(local.z) * adjoint(guide, wi, local, mode)), mixed(guide, e.pdf, wi),
-          mixed_back(guide, e.pdf_reverse)};
+  return {e.f * (std::abs(local.z) * adjoint(guide, wi, local, mode)), e.pdf, mixed_back(guide, e.pdf_reverse)};
+}
+
+float with_field(const Guide& g, const Vec3& wi, float bsdf_pdf) {
+  return g.mix > 0 ? mix_in(g.bsdf, g.mix, bsdf_pdf, pdf_field(g, wi)) : bsdf_pdf;
 }
 
 bool sample(const Guide& guide, float u_lobe, const Vec2& u, Mode mode, GuideSample& out) {
@@ -193,7 +203,7 @@ bool sample(const Guide& guide, float u_lobe, const Vec2& u, Mode mode, GuideSam
     out.pdf_reverse = (1 - guide.mix_other) * s.pdf_reverse;
     out.weight /= 1 - guide.mix;
   } else {
-    out.pdf = mixed(guide, s.pdf, out.wi);
+    out.pdf = with_field(guide, out.wi, s.pdf);
     out.pdf_reverse = mixed_back(guide, s.pdf_reverse);
     if (guide.mix > 0) out.weight *= s.pdf / out.pdf;
   }

@@ -3,17 +3,17 @@
 namespace ajar {
 namespace {
 
-// Last stratum whose cumulative share does not exceed x; those of share 0 are passed over. Without branches, and in 16
-// bits throughout, so that all are compared at once.
-int find(const StrataNode& node, uint16_t x) {
-  uint16_t n = 0;  // before[0] is 0
-  for (int j = 0; j < 16; ++j) n = uint16_t(n + (node.before[j] <= x));
-  return n - 1;
+// Last stratum whose cumulative share does not exceed x; those of share 0 are passed over. Without branches: the row,
+// then the place in it.
+int find(const StrataNode& node, uint32_t x) {
+  const auto starts = [&](int i) { return int(node.before[i] <= x); };
+  const int row = 4 * (starts(4) + starts(8) + starts(12));
+  return row + starts(row + 1) + starts(row + 2) + starts(row + 3);
 }
 
 // Stratum for x in [0, 65536); x becomes the place within it, in [0, 1), and share is multiplied by the stratum's.
 int choose(const StrataNode& node, double& x, float& share) {
-  const int i = find(node, uint16_t(x));
+  const int i = find(node, uint32_t(x));
   const uint32_t steps = node.steps(i);
   x = (x - node.before[i]) / steps;
   share *= float(steps) * 0x1p-16f;
