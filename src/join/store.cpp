@@ -101,9 +101,13 @@ void apply_chances(const LightStore::Block& b, const Vertex& camera, Values& val
   if (region == no_region) return;
   const Views& views = camera.guide.fields->views;
   if (region >= views.regions) return;
+  const uint8_t* chances = views.chance.data();
   std::array<uint32_t, LightStore::width> at;
+  std::array<uint8_t, LightStore::width> found;  // the one step that does not run in vectors
   for (uint32_t i = 0; i < LightStore::width; ++i) at[i] = pair_index(region, std::min(b.region[i], views.regions - 1));
-  for (uint32_t i = 0; i < LightStore::width; ++i) values[i] *= b.region[i] < views.regions ? chance(views, at[i]) : 1;
+  for (uint32_t i = 0; i < LightStore::width; ++i) found[i] = chances[at[i]];
+  for (uint32_t i = 0; i < LightStore::width; ++i)
+    values[i] *= b.region[i] < views.regions ? float(found[i]) * chance_step : 1;
 }
 }  // namespace
 

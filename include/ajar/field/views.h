@@ -30,9 +30,9 @@ inline uint32_t pair_count(uint32_t regions) { return regions * (regions + 1) / 
 /// Either way round; the same however many regions there are.
 inline uint32_t pair_index(uint32_t a, uint32_t b) { return pair_count(std::max(a, b)) + std::min(a, b); }
 
-inline float chance(const Views& v, uint32_t pair) { return float(v.chance[pair]) * (1 / 255.0f); }
+inline constexpr float chance_step = 1 / 255.0f;
 inline float chance(const Views& v, uint32_t a, uint32_t b) {
-  return a < v.regions && b < v.regions ? chance(v, pair_index(a, b)) : 1;
+  return a < v.regions && b < v.regions ? float(v.chance[pair_index(a, b)]) * chance_step : 1;
 }
 inline std::size_t bytes(const Views& v) { return v.tried.size() * (2 * sizeof(float) + sizeof(uint8_t)); }
 ViewTallies start_tallies(const Views& views);
