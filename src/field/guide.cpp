@@ -157,10 +157,6 @@ void make_guide(const Scene& scene, const Fields* fields, Side side, const Surfa
   out.adjoint = std::abs(out.wo_local.z / glm::dot(out.ng, wo));
 }
 
-void fetch(const Guide& guide) {
-  if (guide.mix > 0) fetch(*guide.fields, field_of(guide), guide.cell);
-}
-
 Promise promise(const Guide& guide, const Rgb& beta) {
   if (guide.cell == none || !connectable(guide)) return {};
   const FieldCell& cell = guide.fields->of(guide.side).cells[guide.cell];

@@ -89,7 +89,6 @@ bool join_vertices(std::span<const Vertex> light, double share, std::span<const 
   const GuideEval ea = evaluate_bsdf(a.guide, w, Mode::importance);
   out.value = a.beta * ea.f_cos * ec.f_cos * c.beta / d2;
   if (is_black(out.value)) return false;
-  fetch(a.guide);
   out.light = end_at(light, 0, ea.pdf_reverse);
   out.light_found = {&c.guide, -w, ec.pdf, std::abs(glm::dot(a.ng, w)), d2};
   out.camera = end_at(camera, 0, ec.pdf_reverse);

@@ -71,8 +71,6 @@ struct Promise {
 Promise promise(const Guide& guide, const Rgb& beta);
 /// Whether sample reads u_lobe.
 inline bool chooses(const Guide& guide) { return guide.bsdf.chooses || guide.mix > 0; }
-/// Asks memory for what with_field is going to read.
-void fetch(const Guide& guide);
 GuideEval evaluate(const Guide& guide, const Vec3& wi, Mode mode);
 /// The same but for pdf, which is the bsdf's alone. with_field makes of it, where f_cos is not black, that of evaluate:
 /// the field is what takes time.
