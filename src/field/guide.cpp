@@ -166,7 +166,7 @@ Promise promise(const Guide& guide, const Rgb& beta) {
 
 GuideEval evaluate(const Guide& guide, const Vec3& wi, Mode mode) {
   GuideEval e = evaluate_bsdf(guide, wi, mode);
-  if (is_open(guide, wi, guide.frame.to_local(wi))) e.pdf = with_field(guide, wi, e.pdf);
+  if (guide.mix > 0 && is_open(guide, wi, guide.frame.to_local(wi))) e.pdf = with_field(guide, wi, e.pdf);
   return e;
 }
 

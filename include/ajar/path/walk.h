@@ -110,16 +110,14 @@ inline float keep(const WalkOptions& options, const Guide& guide, int vertices, 
 inline bool choose_direction(const Guide& guide, Mode mode, const WalkOptions& options, int vertices, Sampler& sampler,
                              Rgb& beta, Rgb& survival, float& promised, GuideSample& out) {
   const uint32_t lobe_and_roulette = sampler.skip();
-  const bool choice = chooses(guide);
-  Vec2 u = choice ? sampler.at(lobe_and_roulette) : Vec2(0);
+  const float u_lobe = chooses(guide) ? sampler.at(lobe_and_roulette).x : 0;
   const Rgb arrived = beta;
-  if (!sample(guide, u.x, sampler.next2(), mode, out) || is_black(out.weight)) return false;
+  if (!sample(guide, u_lobe, sampler.next2(), mode, out) || is_black(out.weight)) return false;
   beta *= out.weight;
   survival *= out.weight * (mode == Mode::radiance ? sqr(out.eta) : 1.0f);
   const float goes_on = keep(options, guide, vertices, arrived, survival, promised);
   if (goes_on == 1) return true;
-  if (!choice) u = sampler.at(lobe_and_roulette);
-  if (!(u.y < goes_on)) return false;
+  if (!(sampler.at(lobe_and_roulette).y < goes_on)) return false;
   beta /= goes_on;
   survival /= goes_on;
   return true;
