@@ -41,11 +41,11 @@ void quadric_bounds(const RTCBoundsFunctionArguments* args) {
   b.upper_x = hi.x + pad.x, b.upper_y = hi.y + pad.y, b.upper_z = hi.z + pad.z;
 }
 
-bool hit_quadric(const Shape& shape, const RTCRay& ray, double& t, Vec2& uv) {
+bool hit_quadric(const Shape& shape, const RTCRay& ray, double& t, glm::dvec3& p) {
   const glm::dmat4 m(shape.to_object);
   const glm::dvec3 o = m * glm::dvec4(ray.org_x, ray.org_y, ray.org_z, 1),
                    d = m * glm::dvec4(ray.dir_x, ray.dir_y, ray.dir_z, 0);
-  return intersect_quadric(shape.kind, o, d, ray.tnear, ray.tfar, t, uv);
+  return intersect_quadric(shape.kind, o, d, ray.tnear, ray.tfar, t, p);
 }
 
 void quadric_intersect(const RTCIntersectFunctionNArguments* args) {
@@ -53,8 +53,9 @@ void quadric_intersect(const RTCIntersectFunctionNArguments* args) {
   const auto& quadric = *static_cast<const Quadric*>(args->geometryUserPtr);
   auto& rayhit = *reinterpret_cast<RTCRayHit*>(args->rayhit);
   double t;
-  Vec2 uv;
-  if (!hit_quadric(*quadric.shape, rayhit.ray, t, uv)) return;
+  glm::dvec3 p;
+  if (!hit_quadric(*quadric.shape, rayhit.ray, t, p)) return;
+  const Vec2 uv = quadric_uv(quadric.shape->kind, p);
   rayhit.ray.tfar = float(t);
   rayhit.hit.u = uv.x, rayhit.hit.v = uv.y;
   rayhit.hit.primID = 0, rayhit.hit.geomID = quadric.id;
@@ -65,8 +66,8 @@ void quadric_occluded(const RTCOccludedFunctionNArguments* args) {
   if (!args->valid[0]) return;
   auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
   double t;
-  Vec2 uv;
-  if (hit_quadric(*static_cast<const Quadric*>(args->geometryUserPtr)->shape, ray, t, uv)) ray.tfar = -infinity;
+  glm::dvec3 p;
+  if (hit_quadric(*static_cast<const Quadric*>(args->geometryUserPtr)->shape, ray, t, p)) ray.tfar = -infinity;
 }
 
 }  // namespace

@@ -26,30 +26,33 @@ bool roots(const glm::dvec3& o, const glm::dvec3& d, double& t0, double& t1) {
 }  // namespace
 
 bool intersect_quadric(ShapeKind kind, const glm::dvec3& o, const glm::dvec3& d, double t_min, double t_max, double& t,
-                       Vec2& uv) {
+                       glm::dvec3& p) {
   const auto inside = [&](double x) { return x > t_min && x < t_max; };
   if (kind == ShapeKind::disk) {
     if (d.z == 0) return false;
     t = -o.z / d.z;
     if (!inside(t)) return false;
-    const glm::dvec3 p = o + d * t;
-    const double r2 = p.x * p.x + p.y * p.y;
-    uv = {float(std::sqrt(r2)), turn(p.y, p.x)};
-    return r2 <= 1;
+    p = o + d * t;
+    return p.x * p.x + p.y * p.y <= 1;
   }
   double t0, t1;
   const bool cylinder = kind == ShapeKind::cylinder;
   if (!roots(cylinder ? glm::dvec3(o.x, o.y, 0) : o, cylinder ? glm::dvec3(d.x, d.y, 0) : d, t0, t1)) return false;
   for (const double root : {t0, t1}) {
     if (!inside(root)) continue;
-    const glm::dvec3 p = o + d * root;
+    p = o + d * root;
     if (cylinder && (p.z < 0 || p.z > 1)) continue;
     t = root;
-    uv = cylinder ? Vec2(turn(p.y, p.x), float(p.z))
-                  : Vec2(turn(p.y, p.x), float(std::acos(std::clamp(p.z, -1.0, 1.0)) / std::numbers::pi));
     return true;
   }
   return false;
+}
+
+Vec2 quadric_uv(ShapeKind kind, const glm::dvec3& p) {
+  const float around = turn(p.y, p.x);
+  if (kind == ShapeKind::disk) return {float(std::sqrt(p.x * p.x + p.y * p.y)), around};
+  if (kind == ShapeKind::cylinder) return {around, float(p.z)};
+  return {around, float(std::acos(std::clamp(p.z, -1.0, 1.0)) / std::numbers::pi)};
 }
 
 }  // namespace ajar

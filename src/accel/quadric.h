@@ -6,9 +6,10 @@
 
 namespace ajar {
 
-/// Nearest t in (t_min, t_max) where o + t d meets the unit object, with the (u, v) that Hit::bary stores. d need not
-/// be unit.
+/// Nearest t in (t_min, t_max) where o + t d meets the unit object, and that point p. d need not be unit.
 bool intersect_quadric(ShapeKind kind, const glm::dvec3& o, const glm::dvec3& d, double t_min, double t_max, double& t,
-                       Vec2& uv);
+                       glm::dvec3& p);
+/// The (u, v) of a point of the unit object that Hit::bary stores. Shadow rays do not ask for it.
+Vec2 quadric_uv(ShapeKind kind, const glm::dvec3& p);
 
 }  // namespace ajar

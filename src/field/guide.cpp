@@ -8,6 +8,10 @@ bool sides_agree(const Guide& g, const Vec3& w, const Vec3& local) {
   return !g.bent || glm::dot(g.ng, w) * local.z > 0;
 }
 
+bool is_open(const Guide& g, const Vec3& w, const Vec3& local) {
+  return local.z != 0 && !g.blocked && sides_agree(g, w, local);
+}
+
 // |cos(ng, wi)| / |cos(ns, wi)| times the stored half: Veach's correction of the adjoint bsdf for bent normals.
 float adjoint(const Guide& g, const Vec3& wi, const Vec3& local, Mode mode) {
   if (!g.bent || mode == Mode::radiance) return 1;
@@ -62,27 +66,43 @@ float breadth(const Bsdf& bsdf) {
   return sum / bsdf.opacity;
 }
 
-void place(const Fields& fields, const Surface& surface, Guide& out) {
-  const Place at = find(fields.table, surface.p, glm::dot(surface.ng, out.wo) < 0 ? -surface.ng : surface.ng);
-  out.cell = at.cell, out.missing = at.missing;
-  if (at.cell == none || !out.bsdf.has_smooth) return;
-  const float share = breadth(out.bsdf);
-  if (!(share > 0)) return;
-  const Side other = out.side == Side::camera ? Side::light : Side::camera;
-  out.mix = share * fields.of(out.side).cells[at.cell].mix;
-  out.mix_other = share * fields.of(other).cells[at.cell].mix;
-  if (out.mix_other > 0) out.back = pdf(fields, fields.of(other), at.cell, out.p, out.wo);
+const Field& field_of(const Guide& g) { return g.fields->of(g.side); }
+const Field& field_of_other(const Guide& g) {
+  return g.fields->of(g.side == Side::camera ? Side::light : Side::camera);
 }
 
-float pdf_field(const Guide& g, const Vec3& wi) { return pdf(*g.fields, g.fields->of(g.side), g.cell, g.p, wi); }
+// Most of the time that a field takes is spent waiting for memory: what look-ups in a cell begin with is asked for
+// early.
+void fetch(const Fields& fields, const Field& field, uint32_t cell) {
+  const Cell& c = fields.cells[cell];
+  const StrataNode& root = field.nodes[field.cells[cell].root];
+  __builtin_prefetch(&c), __builtin_prefetch(&c.region);
+  __builtin_prefetch(&root), __builtin_prefetch(&root.children);
+}
+
+void place(const Surface& surface, Guide& out) {
+  const Fields& fields = *out.fields;
+  const Place at = find(fields.table, surface.p, glm::dot(surface.ng, out.wo) < 0 ? -surface.ng : surface.ng);
+  out.cell = at.cell, out.missing = at.missing;
+  if (at.cell != none) fetch(fields, field_of_other(out), at.cell), fetch(fields, field_of(out), at.cell);
+}
+
+void mix_fields(Guide& out) {
+  if (out.cell == none || !out.bsdf.has_smooth) return;
+  const float share = breadth(out.bsdf);
+  if (!(share > 0)) return;
+  const Field& other = field_of_other(out);
+  out.mix = share * field_of(out).cells[out.cell].mix;
+  out.mix_other = share * other.cells[out.cell].mix;
+  if (out.mix_other > 0) out.back = pdf(*out.fields, other, out.cell, out.p, out.wo);
+}
+
+float pdf_field(const Guide& g, const Vec3& wi) { return pdf(*g.fields, field_of(g), g.cell, g.p, wi); }
 
 // (G4) for both sides: the bsdf's densities become those of the mixtures. What passes a mask straight does so with the
 // mask's probability, whatever the fields on either side say: the mixtures are of the rest.
 float mix_in(const Bsdf& bsdf, float mix, float bsdf_pdf, float pdf_field) {
   return (1 - mix) * bsdf_pdf + mix * bsdf.opacity * pdf_field;
-}
-float mixed(const Guide& g, float bsdf_pdf, const Vec3& wi) {
-  return g.mix > 0 ? mix_in(g.bsdf, g.mix, bsdf_pdf, pdf_field(g, wi)) : bsdf_pdf;
 }
 float mixed_back(const Guide& g, float bsdf_pdf) {
   return g.mix_other > 0 ? mix_in(g.bsdf, g.mix_other, bsdf_pdf, g.back) : bsdf_pdf;
@@ -100,9 +120,9 @@ bool takes_field(const Guide& g, float& u_lobe) {
 
 bool sample_field(const Guide& g, const Vec2& u, Mode mode, GuideSample& out) {
   float pdf_field;
-  out.wi = sample(*g.fields, g.fields->of(g.side), g.cell, g.p, u, pdf_field);
+  out.wi = sample(*g.fields, field_of(g), g.cell, g.p, u, pdf_field);
   const Vec3 local = g.frame.to_local(out.wi);
-  if (!(pdf_field > 0) || local.z == 0 || g.blocked || !sides_agree(g, out.wi, local)) return false;
+  if (!(pdf_field > 0) || !is_open(g, out.wi, local)) return false;
   const BsdfEval e = eval(g.bsdf, g.wo_local, local, mode);
   out.pdf = mix_in(g.bsdf, g.mix, e.pdf, pdf_field);
   out.pdf_reverse = mixed_back(g, e.pdf_reverse);
@@ -116,20 +136,21 @@ bool sample_field(const Guide& g, const Vec2& u, Mode mode, GuideSample& out) {
 
 void make_guide(const Scene& scene, const Fields* fields, Side side, const Surface& surface, const Vec3& wo,
                 Guide& out) {
+  out.side = side;
+  out.p = surface.p;
+  out.wo = wo;
+  out.fields = fields;
+  out.cell = none;
+  out.missing = 0;
+  if (fields) place(surface, out);
   out.frame = surface.frame;
   resolve(scene, surface, wo, out.frame, out.bsdf);
   const float agreement = glm::dot(out.frame.n, surface.ng);
   out.ng = agreement < 0 ? -surface.ng : surface.ng;
   out.bent = std::abs(agreement) < 1 - 1e-6f;
-  out.wo = wo;
   out.wo_local = out.frame.to_local(wo);
   out.mix = out.mix_other = 0;
-  out.side = side;
-  out.p = surface.p;
-  out.fields = fields;
-  out.cell = none;
-  out.missing = 0;
-  if (fields) place(*fields, surface, out);
+  mix_fields(out);
   out.blocked = false;
   if (!out.bent) return;
   out.blocked = !sides_agree(out, wo, out.wo_local);
@@ -144,11 +165,20 @@ Promise promise(const Guide& guide, const Rgb& beta) {
 }
 
 GuideEval evaluate(const Guide& guide, const Vec3& wi, Mode mode) {
+  GuideEval e = evaluate_bsdf(guide, wi, mode);
+  if (guide.mix > 0 && is_open(guide, wi, guide.frame.to_local(wi))) e.pdf = with_field(guide, wi, e.pdf);
+  return e;
+}
+
+GuideEval evaluate_bsdf(const Guide& guide, const Vec3& wi, Mode mode) {
   const Vec3 local = guide.frame.to_local(wi);
-  if (local.z == 0 || guide.blocked || !sides_agree(guide, wi, local)) return {};
+  if (!is_open(guide, wi, local)) return {};
   const BsdfEval e = eval(guide.bsdf, guide.wo_local, local, mode);
-  return {e.f * (std::abs(local.z) * adjoint(guide, wi, local, mode)), mixed(guide, e.pdf, wi),
-          mixed_back(guide, e.pdf_reverse)};
+  return {e.f * (std::abs(local.z) * adjoint(guide, wi, local, mode)), e.pdf, mixed_back(guide, e.pdf_reverse)};
+}
+
+float with_field(const Guide& g, const Vec3& wi, float bsdf_pdf) {
+  return g.mix > 0 ? mix_in(g.bsdf, g.mix, bsdf_pdf, pdf_field(g, wi)) : bsdf_pdf;
 }
 
 bool sample(const Guide& guide, float u_lobe, const Vec2& u, Mode mode, GuideSample& out) {
@@ -169,7 +199,7 @@ bool sample(const Guide& guide, float u_lobe, const Vec2& u, Mode mode, GuideSam
     out.pdf_reverse = (1 - guide.mix_other) * s.pdf_reverse;
     out.weight /= 1 - guide.mix;
   } else {
-    out.pdf = mixed(guide, s.pdf, out.wi);
+    out.pdf = with_field(guide, out.wi, s.pdf);
     out.pdf_reverse = mixed_back(guide, s.pdf_reverse);
     if (guide.mix > 0) out.weight *= s.pdf / out.pdf;
   }

@@ -3,11 +3,12 @@
 namespace ajar {
 namespace {
 
-// Last stratum whose cumulative share does not exceed x; those of share 0 are passed over. Without branches.
+// Last stratum whose cumulative share does not exceed x; those of share 0 are passed over. Without branches: the row,
+// then the place in it.
 int find(const StrataNode& node, uint32_t x) {
-  int i = 0;
-  for (int j = 1; j < 16; ++j) i += node.before[j] <= x;
-  return i;
+  const auto starts = [&](int i) { return int(node.before[i] <= x); };
+  const int row = 4 * (starts(4) + starts(8) + starts(12));
+  return row + starts(row + 1) + starts(row + 2) + starts(row + 3);
 }
 
 // Stratum for x in [0, 65536); x becomes the place within it, in [0, 1), and share is multiplied by the stratum's.

@@ -1,5 +1,7 @@
 #include "ajar/field/training.h"
 
+#include <array>
+
 #include "ajar/core/sampler.h"
 #include "ajar/field/portals.h"
 #include "fixed.h"
@@ -57,6 +59,30 @@ void add_crossings(const Fields& fields, const Field& field, Tallies& tallies, u
   }
 }
 
+constexpr size_t no_stratum = ~size_t(0);
+
+// Where a record goes; no_stratum if it says nothing.
+size_t stratum_of(const Fields& fields, const Field& field, uint32_t cell, const Record& r) {
+  const Vec3 local = fields.cells[cell].frame.to_local(r.w);
+  if (!(local.z > 0) || !(r.weight > 0) || !(r.value >= 0)) return no_stratum;
+  float density;
+  return find_stratum(fields, field, cell, centered(fields, field, cell, r.p, local, density));
+}
+
+void add_record(const Fields& fields, const Field& field, Tallies& tallies, uint32_t cell, size_t stratum,
+                const Record& r) {
+  if (stratum == no_stratum) return;
+  add_record(field, tallies, stratum, r.value, r.weight);
+  if (r.value > 0) add_distance(fields, field, tallies, cell, r);
+  if (!field.portals.empty()) add_crossings(fields, field, tallies, cell, r);
+}
+
+void fetch(const Tallies& tallies, uint32_t cell, size_t stratum) {
+  if (stratum == no_stratum) return;
+  __builtin_prefetch(&tallies.weight[stratum], 1), __builtin_prefetch(&tallies.value[stratum], 1);
+  __builtin_prefetch(&tallies.held[cell], 1), __builtin_prefetch(&tallies.nearness[cell], 1);
+}
+
 }  // namespace
 
 Tallies& Training::of(Side side) { return side == Side::camera ? q : w; }
@@ -72,13 +98,20 @@ Training start_training(const Fields& fields) {
 }
 
 void record(const Fields& fields, const Field& field, Tallies& tallies, uint32_t cell, const Record& r) {
-  const Vec3 local = fields.cells[cell].frame.to_local(r.w);
-  if (!(local.z > 0) || !(r.weight > 0) || !(r.value >= 0)) return;
-  float density;
-  const size_t stratum = find_stratum(fields, field, cell, centered(fields, field, cell, r.p, local, density));
-  add_record(field, tallies, stratum, r.value, r.weight);
-  if (r.value > 0) add_distance(fields, field, tallies, cell, r);
-  if (!field.portals.empty()) add_crossings(fields, field, tallies, cell, r);
+  add_record(fields, field, tallies, cell, stratum_of(fields, field, cell, r), r);
+}
+
+void record(const Fields& fields, Training& training, std::span<const Lesson> lessons) {
+  std::array<size_t, most_lessons> strata;
+  for (size_t i = 0; i < lessons.size(); ++i) {
+    const Lesson& l = lessons[i];
+    strata[i] = stratum_of(fields, fields.of(l.side), l.cell, l.record);
+    fetch(training.of(l.side), l.cell, strata[i]);
+  }
+  for (size_t i = 0; i < lessons.size(); ++i) {
+    const Lesson& l = lessons[i];
+    add_record(fields, fields.of(l.side), training.of(l.side), l.cell, strata[i], l.record);
+  }
 }
 
 void record_square(const Field& field, Tallies& tallies, uint32_t cell, const Vec2& at, float value, float weight) {

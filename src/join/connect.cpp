@@ -53,20 +53,21 @@ bool join_light(const Scene& scene, const Fields* fields, Sampler& sampler, cons
   const bool found = choose_light_point(scene, c.guide, c.p, sampler, d);
   out.point = d.point;
   if (!found) return false;
-  const GuideEval e = evaluate(c.guide, d.wi, Mode::radiance);
+  const GuideEval e = evaluate_bsdf(c.guide, d.wi, Mode::radiance);
   out.arrives = d.radiance * std::abs(glm::dot(c.ng, d.wi)) / d.pdf;
   out.value = c.beta * e.f_cos * d.radiance / d.pdf;
   if (is_black(out.value)) return false;
   const LightPoint& point = d.point;
-  const double d2 = point.infinite ? 1 : sqr(d.distance);
-  const double cos_light = point.infinite || point.delta_position ? 1 : std::abs(glm::dot(point.n, d.wi));
+  const float d2 = point.infinite ? 1 : sqr(d.distance);
+  const float cos_light = point.infinite || point.delta_position ? 1 : std::abs(glm::dot(point.n, d.wi));
   const double cos_here = std::abs(glm::dot(c.ng, d.wi));
   const EmissionPdf emission = pdf_emission(scene, fields, point, -d.wi);
   const bool hittable = !point.delta_position && !point.delta_direction;
   const double own = point.infinite ? emission.direction : emission.position;
   const double to_here = point.infinite ? emission.position : emission.direction;
   const double nee = hittable ? double(d.pdf) * cos_light / d2 : double(d.pdf);
-  out.light = {1, own, e.pdf * cos_light / d2, 1, 0, false, hittable ? 1.0 : 0.0};
+  out.light = {1, own, 0, 1, 0, false, hittable ? 1.0 : 0.0};
+  out.light_found = {&c.guide, d.wi, e.pdf, cos_light, d2};
   out.camera = end_at(camera.first(t), to_here * cos_here / d2, e.pdf_reverse);
   out.shares = {ratio(nee, own), light_paths};
   out.segment = segment_to(d, c.p, c.ng, c.error);
@@ -83,13 +84,15 @@ bool join_vertices(std::span<const Vertex> light, double share, std::span<const 
   if (!(d2 > 0)) return false;
   const float distance = std::sqrt(d2);
   const Vec3 w = between / distance;
-  const GuideEval ec = evaluate(c.guide, -w, Mode::radiance);
+  const GuideEval ec = evaluate_bsdf(c.guide, -w, Mode::radiance);
   if (is_black(ec.f_cos)) return false;
-  const GuideEval ea = evaluate(a.guide, w, Mode::importance);
+  const GuideEval ea = evaluate_bsdf(a.guide, w, Mode::importance);
   out.value = a.beta * ea.f_cos * ec.f_cos * c.beta / d2;
   if (is_black(out.value)) return false;
-  out.light = end_at(light, ec.pdf * std::abs(glm::dot(a.ng, w)) / d2, ea.pdf_reverse);
-  out.camera = end_at(camera, ea.pdf * std::abs(glm::dot(c.ng, w)) / d2, ec.pdf_reverse);
+  out.light = end_at(light, 0, ea.pdf_reverse);
+  out.light_found = {&c.guide, -w, ec.pdf, std::abs(glm::dot(a.ng, w)), d2};
+  out.camera = end_at(camera, 0, ec.pdf_reverse);
+  out.camera_found = {&a.guide, w, ea.pdf, std::abs(glm::dot(c.ng, w)), d2};
   out.shares = {share, light_paths};
   const Vec3 from = offset(c.p, c.ng, c.error, -w);
   out.segment = {from, shadow_end(a.p, a.ng, a.error, w, distance) - from};
@@ -108,7 +111,7 @@ bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int
     out.value = a.beta * float(cosine * k.factor);
     out.light = {1, a.own, k.factor * cosine, 1, 0, false, a.sum};
   } else {
-    const GuideEval e = evaluate(a.guide, k.w, Mode::importance);
+    const GuideEval e = evaluate_bsdf(a.guide, k.w, Mode::importance);
     out.value = a.beta * e.f_cos * k.factor;  // (P3)
     out.light = end_at(light.first(s), k.factor * cosine, e.pdf_reverse);
   }
@@ -122,6 +125,15 @@ bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int
   const Camera& camera = scene.camera;
   if (camera.near_clip > 0) out.segment.t_max = 1 - camera.near_clip / (camera.to_camera * Vec4(a.p, 1)).z;
   return true;
+}
+
+void complete(Candidate& c) {
+  const auto ask = [](Finding& f, double& density) {
+    if (f.guide) density = double(with_field(*f.guide, f.w, f.pdf)) * f.cosine / f.distance2;
+    f.guide = nullptr;
+  };
+  ask(c.light_found, c.light.other);
+  ask(c.camera_found, c.camera.other);
 }
 
 }  // namespace ajar

@@ -19,7 +19,7 @@ void put(LightStore::Block& b, uint32_t i, const Vertex& v, const LightStore::Pl
   const Vec3 n = v.guide.frame.n;
   b.x[i] = v.p.x, b.y[i] = v.p.y, b.z[i] = v.p.z;
   b.nx[i] = n.x, b.ny[i] = n.y, b.nz[i] = n.z;
-  b.flux[i] = flux_of(v) * at.counts;
+  b.flux[i] = at.flux * at.counts;
   b.near[i] = near;
   b.behind[i] = v.guide.bsdf.opaque ? 0.0f : -1.0f;
   b.region[i] = at.region, b.s[i] = at.s;
@@ -50,8 +50,11 @@ void add(LightStore& store, const Subpath& light, double share) {
   int last = 0;
   for (int s = 2; s <= light.n; ++s) {
     const Vertex& v = light[s - 1];
-    if (!connectable(v.guide) || !(flux_of(v) > 0)) continue;
-    store.places.push_back({first, s, region_of(v.guide), share, store.paths - 1});
+    if (!connectable(v.guide)) continue;
+    const float flux = flux_of(v);
+    if (!(flux > 0)) continue;
+    const float worth = promise(v.guide, v.beta).beyond;
+    store.places.push_back({first, s, region_of(v.guide), share, store.paths - 1, 1, flux, worth});
     last = s;
   }
   store.vertices.insert(store.vertices.end(), light.vertices.begin(), light.vertices.begin() + last);
@@ -62,17 +65,13 @@ constexpr double evenly = 0.5;
 
 void prefer(LightStore& store, float u) {
   const size_t n = store.places.size();
-  std::vector<double> worth(n);
   double all = 0;
-  for (size_t i = 0; i < n; ++i) {
-    const Vertex& v = store.subpath(store.places[i]).back();
-    all += worth[i] = promise(v.guide, v.beta).beyond;
-  }
+  for (const LightStore::Place& at : store.places) all += double(at.worth);
   if (!(all > 0) || !(all < infinity)) return;
   std::vector<LightStore::Place> drawn;
   double sum = 0;
   for (size_t i = 0; i < n; ++i) {
-    const double times = evenly + (1 - evenly) * worth[i] / all * double(n);  // (J2)
+    const double times = evenly + (1 - evenly) * double(store.places[i].worth) / all * double(n);  // (J2)
     sum += times;
     while (double(drawn.size()) + u < sum) {
       drawn.push_back(store.places[i]);
@@ -100,7 +99,15 @@ void make_blocks(LightStore& store, const Near& near, bool in_order) {
 void apply_chances(const LightStore::Block& b, const Vertex& camera, Values& values) {
   const uint32_t region = region_of(camera.guide);
   if (region == no_region) return;
-  for (uint32_t i = 0; i < LightStore::width; ++i) values[i] *= chance(camera.guide.fields->views, region, b.region[i]);
+  const Views& views = camera.guide.fields->views;
+  if (region >= views.regions) return;
+  const uint8_t* chances = views.chance.data();
+  std::array<uint32_t, LightStore::width> at;
+  std::array<uint8_t, LightStore::width> found;  // the one step that does not run in vectors
+  for (uint32_t i = 0; i < LightStore::width; ++i) at[i] = pair_index(region, std::min(b.region[i], views.regions - 1));
+  for (uint32_t i = 0; i < LightStore::width; ++i) found[i] = chances[at[i]];
+  for (uint32_t i = 0; i < LightStore::width; ++i)
+    values[i] *= b.region[i] < views.regions ? float(found[i]) * chance_step : 1;
 }
 }  // namespace
 
@@ -137,8 +144,8 @@ bool choose(const LightStore& store, const Vertex& camera, double inner, int mos
   Values sums;
   for (uint32_t i = 0; i < LightStore::width; ++i) sums[i] = sum += values[i];
   if (!(sum > 0) || !(sum < infinity)) return false;
-  uint32_t i = 0;
-  while (i + 1 < LightStore::width && !(u.y * sum < sums[i])) ++i;
+  uint32_t i = 0;  // sums only rise: as many as the mark is past
+  for (uint32_t j = 0; j + 1 < LightStore::width; ++j) i += !(u.y * sum < sums[j]);
   if (!(values[i] > 0)) return false;
   out.place = &store.places[i * n + block];
   out.weight = float(double(n) / store.paths) * out.place->counts * sum / values[i];

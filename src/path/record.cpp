@@ -52,12 +52,12 @@ void record_segment(const Fields& fields, Training& training, const Vertex& a, c
   const double density = from.own * pdf / from.cosine + to.other * back / to.cosine;
   const float at_a = weight_at(from, density);
   const float distance = std::sqrt(b.distance2);
-  record(fields, fields.q, training.q, from.cell, {a.p, d, distance, to.q, at_a});
-  record(fields, fields.w, training.w, from.cell, {a.p, d, distance, to.w, at_a});
-  if (to.cell == none) return;
   const float at_b = weight_at(to, density);
-  record(fields, fields.q, training.q, to.cell, {b.p, -d, distance, from.q, at_b});
-  record(fields, fields.w, training.w, to.cell, {b.p, -d, distance, from.w, at_b});
+  const Lesson lessons[] = {{Side::camera, from.cell, {a.p, d, distance, to.q, at_a}},
+                            {Side::light, from.cell, {a.p, d, distance, to.w, at_a}},
+                            {Side::camera, to.cell, {b.p, -d, distance, from.q, at_b}},
+                            {Side::light, to.cell, {b.p, -d, distance, from.w, at_b}}};
+  record(fields, training, std::span(lessons, to.cell == none ? 2 : 4));
 }
 
 // The field of the side that traced the segment, alone: the path knows nothing of the other's.

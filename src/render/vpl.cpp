@@ -46,10 +46,12 @@ float share_of_camera(const Work& work, Candidate& c) {
   return float(mis_of_camera(work.job.walk.heuristic, c.light, c.camera, c.shares));  // (I3)
 }
 
-bool is_free(Work& work, const Candidate& c, int s, int t) {
+bool is_free(Work& work, Candidate& c, int s, int t) {
   ++work.scratch.counters.shadow_rays;
   ++work.scratch.ledger->at(s, t).rays;
-  return visible(*work.job.accel, c.segment);
+  if (!visible(*work.job.accel, c.segment)) return false;
+  complete(c);
+  return true;
 }
 
 // The share of a path that joins have whose edge is x - y, of all that could find it: the rest is for the walk from x

@@ -72,6 +72,10 @@ Promise promise(const Guide& guide, const Rgb& beta);
 /// Whether sample reads u_lobe.
 inline bool chooses(const Guide& guide) { return guide.bsdf.chooses || guide.mix > 0; }
 GuideEval evaluate(const Guide& guide, const Vec3& wi, Mode mode);
+/// The same but for pdf, which is the bsdf's alone. with_field makes of it, where f_cos is not black, that of evaluate:
+/// the field is what takes time.
+GuideEval evaluate_bsdf(const Guide& guide, const Vec3& wi, Mode mode);
+float with_field(const Guide& guide, const Vec3& wi, float bsdf_pdf);
 bool sample(const Guide& guide, float u_lobe, const Vec2& u, Mode mode, GuideSample& out);
 
 }  // namespace ajar

@@ -26,12 +26,13 @@ struct ViewTallies {
 inline constexpr uint32_t most_regions = 512, no_region = ~0u;
 
 /// Pairs of so many regions, those of a region with itself too.
-inline std::size_t pair_count(uint32_t regions) { return std::size_t(regions) * (regions + 1) / 2; }
+inline uint32_t pair_count(uint32_t regions) { return regions * (regions + 1) / 2; }
 /// Either way round; the same however many regions there are.
-inline std::size_t pair_index(uint32_t a, uint32_t b) { return pair_count(std::max(a, b)) + std::min(a, b); }
+inline uint32_t pair_index(uint32_t a, uint32_t b) { return pair_count(std::max(a, b)) + std::min(a, b); }
 
+inline constexpr float chance_step = 1 / 255.0f;
 inline float chance(const Views& v, uint32_t a, uint32_t b) {
-  return a < v.regions && b < v.regions ? float(v.chance[pair_index(a, b)]) * (1 / 255.0f) : 1;
+  return a < v.regions && b < v.regions ? float(v.chance[pair_index(a, b)]) * chance_step : 1;
 }
 inline std::size_t bytes(const Views& v) { return v.tried.size() * (2 * sizeof(float) + sizeof(uint8_t)); }
 ViewTallies start_tallies(const Views& views);

@@ -10,17 +10,27 @@
 
 namespace ajar {
 
+/// The density with which a vertex of one end finds the last one of the other, before its field was asked: that takes
+/// time, and only weights of what is visible need it.
+struct Finding {
+  const Guide* guide = nullptr;     ///< of the vertex; null: nothing is left to ask
+  Vec3 w{0};                        ///< direction in which it finds the other
+  float pdf = 0;                    ///< of its bsdf alone
+  float cosine = 1, distance2 = 1;  ///< at the one that is found; between them
+};
+
 /// One way to join two subpaths. value is the contribution to the pixel (or the film, for t = 1, per unit of the filter
 /// and light path), divided by all densities, without visibility and weight.
 struct Candidate {
   Rgb value{0};
   Segment segment;  ///< that must be free
   End light, camera;
+  Finding light_found, camera_found;  ///< what End::other will be, see complete
   Shares shares;
   LightPoint point;  ///< s = 1: of the light that was asked
-  Vec2 raster{0};  ///< t = 1: where it lands
-  Rgb arrives{0};  ///< at the last vertex of a subpath, from the light or lens itself: s = 0 radiance, s = 1
-                   ///< irradiance, t = 1 importance (raster area per area); divided by densities, without visibility
+  Vec2 raster{0};    ///< t = 1: where it lands
+  Rgb arrives{0};    ///< at the last vertex of a subpath, from the light or lens itself: s = 0 radiance, s = 1
+                     ///< irradiance, t = 1 importance (raster area per area); divided by densities, without visibility
 };
 
 /// s = 0: the camera subpath's last vertex is on a light. surface is that of the vertex.
@@ -38,6 +48,11 @@ bool join_vertices(std::span<const Vertex> light, double share, std::span<const 
 bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int s, double share, double light_paths,
                  Candidate& out);
 
-inline double weight(Heuristic h, const Candidate& c) { return mis_weight(h, c.light, c.camera, c.shares); }
+/// Asks the fields for the densities that are still open.
+void complete(Candidate& c);
+inline double weight(Heuristic h, Candidate& c) {
+  complete(c);
+  return mis_weight(h, c.light, c.camera, c.shares);
+}
 
 }  // namespace ajar

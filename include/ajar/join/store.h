@@ -19,10 +19,12 @@ struct LightStore {
     double share = 1;   ///< of the subpath's walk (walk.h, first_share)
     uint32_t path = 0;  ///< number of its subpath
     float counts = 1;   ///< for how many of its kind it stands, where others were left out
+    float flux = 0;     ///< luminance that it scatters, see Block
+    float worth = 0;    ///< what the fields expect it to bring to the image, direct view aside
   };
   /// What a choice reads of so many places, side by side. A block is an even sample of all places.
   static constexpr uint32_t width = 32;
-  struct Block {
+  struct alignas(64) Block {
     float x[width] = {}, y[width] = {}, z[width] = {};
     float nx[width] = {}, ny[width] = {}, nz[width] = {};  ///< shading normal on the side that it is lit from
     float flux[width] = {};    ///< luminance that it scatters at right angles, taken as diffuse [per solid angle]; or 0

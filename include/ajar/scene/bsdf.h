@@ -2,6 +2,10 @@
 // Leaves: a Bsdf, the material evaluated there as a plain value, with eval, pdf and sample in the local shading frame.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+
 #include "ajar/scene/bsdf/lobes.h"
 #include "ajar/scene/material.h"
 
@@ -13,7 +17,7 @@ enum class Mode : uint8_t { radiance, importance };
 inline constexpr int max_lobes = 4;
 
 /// A bsdf at one point: a weighted sum of lobes, textures evaluated. A plain value, copied freely while the scene
-/// lives; what lies beyond count is never written or read.
+/// lives; what lies beyond count is never written, read or copied.
 struct Bsdf {
   int count = 0;            ///< lobes in use; 0 absorbs what does not pass
   bool has_smooth = false;  ///< some lobe is not a delta: the vertex can be connected to
@@ -27,6 +31,14 @@ struct Bsdf {
   float choice[max_lobes];  ///< probability of sampling each lobe: does not depend on direction, so the same both ways
   Lobe lobes[max_lobes];
   Vec3 normals[max_lobes];  ///< where bent: each lobe's, unit, in the frame of the directions
+
+  Bsdf() = default;
+  Bsdf(const Bsdf& o) { *this = o; }
+  Bsdf& operator=(const Bsdf& o) {
+    std::memcpy(static_cast<void*>(this), &o, offsetof(Bsdf, lobes) + size_t(o.count) * sizeof(Lobe));
+    if (o.bent) std::copy_n(o.normals, o.count, normals);
+    return *this;
+  }
 };
 
 /// Value and densities for one pair of directions, smooth (non-delta) part only. Of a bent Bsdf f is what makes f times
