@@ -46,7 +46,7 @@ float nearness(const Fields& fields, const Work& w, uint32_t cell) {
 // from elsewhere. More than come through it by themselves: from there on the other side's subpaths know the way, and
 // hardly any path finds through. (G11)
 void learn_opening(const Work& w, uint32_t cell, FieldCell& next) {
-  constexpr double most_drawn = 0.6, least_carried = 1e-3, usual_contrast = 2;
+  constexpr double most_drawn = 0.6, least_carried = 1e-4, usual_contrast = 2;
   const size_t n = w.field->portals.size() / 2;
   if (n == 0) return;
   const int64_t* const sums = &w.tallies->through[cell * (2 + 2 * n)];
