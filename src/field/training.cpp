@@ -101,16 +101,16 @@ void record(const Fields& fields, const Field& field, Tallies& tallies, uint32_t
   add_record(fields, field, tallies, cell, stratum_of(fields, field, cell, r), r);
 }
 
-void record(const Fields& fields, Training& training, std::span<const Lesson> lessons) {
-  std::array<size_t, most_lessons> strata;
-  for (size_t i = 0; i < lessons.size(); ++i) {
-    const Lesson& l = lessons[i];
-    strata[i] = stratum_of(fields, fields.of(l.side), l.cell, l.record);
-    fetch(training.of(l.side), l.cell, strata[i]);
+void record(const Fields& fields, Training& training, std::span<const FieldRecord> records) {
+  std::array<size_t, most_records> strata;
+  for (size_t i = 0; i < records.size(); ++i) {
+    const FieldRecord& r = records[i];
+    strata[i] = stratum_of(fields, fields.of(r.side), r.cell, r.record);
+    fetch(training.of(r.side), r.cell, strata[i]);
   }
-  for (size_t i = 0; i < lessons.size(); ++i) {
-    const Lesson& l = lessons[i];
-    add_record(fields, fields.of(l.side), training.of(l.side), l.cell, strata[i], l.record);
+  for (size_t i = 0; i < records.size(); ++i) {
+    const FieldRecord& r = records[i];
+    add_record(fields, fields.of(r.side), training.of(r.side), r.cell, strata[i], r.record);
   }
 }
 

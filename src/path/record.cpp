@@ -53,11 +53,11 @@ void record_segment(const Fields& fields, Training& training, const Vertex& a, c
   const float at_a = weight_at(from, density);
   const float distance = std::sqrt(b.distance2);
   const float at_b = weight_at(to, density);
-  const Lesson lessons[] = {{Side::camera, from.cell, {a.p, d, distance, to.q, at_a}},
-                            {Side::light, from.cell, {a.p, d, distance, to.w, at_a}},
-                            {Side::camera, to.cell, {b.p, -d, distance, from.q, at_b}},
-                            {Side::light, to.cell, {b.p, -d, distance, from.w, at_b}}};
-  record(fields, training, std::span(lessons, to.cell == none ? 2 : 4));
+  const FieldRecord records[] = {{Side::camera, from.cell, {a.p, d, distance, to.q, at_a}},
+                                 {Side::light, from.cell, {a.p, d, distance, to.w, at_a}},
+                                 {Side::camera, to.cell, {b.p, -d, distance, from.q, at_b}},
+                                 {Side::light, to.cell, {b.p, -d, distance, from.w, at_b}}};
+  record(fields, training, std::span(records, to.cell == none ? 2 : 4));
 }
 
 // The field of the side that traced the segment, alone: the path knows nothing of the other's.

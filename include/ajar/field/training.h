@@ -50,15 +50,15 @@ struct Record {
 };
 void record(const Fields& fields, const Field& field, Tallies& tallies, uint32_t cell, const Record& record);
 /// A record, and what it is for: whose field, and which cell of it.
-struct Lesson {
+struct FieldRecord {
   Side side;
   uint32_t cell = none;
   Record record;
 };
-inline constexpr size_t most_lessons = 4;
-/// Several at once, most_lessons at most: memory is asked for all of them before any is added to, since atomic sums
+inline constexpr size_t most_records = 4;
+/// Several at once, most_records at most: memory is asked for all of them before any is added to, since atomic sums
 /// wait for it one after the other.
-void record(const Fields& fields, Training& training, std::span<const Lesson> lessons);
+void record(const Fields& fields, Training& training, std::span<const FieldRecord> records);
 /// The same at a point of the unit square, of a field whose cells are such squares.
 void record_square(const Field& field, Tallies& tallies, uint32_t cell, const Vec2& at, float value, float weight);
 /// Irradiance (or the lens's importance) that a vertex in the cell got from next-event estimation; zeros too.
