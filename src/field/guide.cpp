@@ -73,18 +73,20 @@ const Field& field_of_other(const Guide& g) {
 
 // Most of the time that a field takes is spent waiting for memory: what look-ups in a cell begin with is asked for
 // early.
-void fetch(const Fields& fields, const Field& field, uint32_t cell) {
+void fetch(const Fields& fields, uint32_t cell) {
   const Cell& c = fields.cells[cell];
-  const StrataNode& root = field.nodes[field.cells[cell].root];
   __builtin_prefetch(&c), __builtin_prefetch(&c.region);
-  __builtin_prefetch(&root), __builtin_prefetch(&root.children);
+  for (const Field* field : {&fields.q, &fields.w}) {
+    const StrataNode& root = field->nodes[field->cells[cell].root];
+    __builtin_prefetch(&root), __builtin_prefetch(&root.children);
+  }
 }
 
 void place(const Surface& surface, Guide& out) {
   const Fields& fields = *out.fields;
   const Place at = find(fields.table, surface.p, glm::dot(surface.ng, out.wo) < 0 ? -surface.ng : surface.ng);
   out.cell = at.cell, out.missing = at.missing;
-  if (at.cell != none) fetch(fields, field_of_other(out), at.cell), fetch(fields, field_of(out), at.cell);
+  if (at.cell != none) fetch(fields, at.cell);
 }
 
 void mix_fields(Guide& out) {

@@ -49,7 +49,7 @@ void learn_opening(const Work& w, uint32_t cell, FieldCell& next) {
   constexpr double most_drawn = 0.6, least_carried = 1e-4, usual_contrast = 2;
   const size_t n = w.field->portals.size() / 2;
   if (n == 0) return;
-  const int64_t* const sums = &w.tallies->through[cell * (2 + 2 * n)];
+  const int64_t* const sums = &w.tallies->through[cell * sums_through(*w.field)];
   if (sums[1] == 0) return;
   uint32_t best = none;
   double most = 0;

@@ -191,7 +191,7 @@ void read(Reader& r, const Field& f, Tallies& t) {
   r.require(t.value.size() == strata && t.weight.size() == strata && t.direct.size() == cells &&
             t.directs.size() == cells && t.visits.size() == cells && t.held.size() == cells &&
             t.nearness.size() == cells && t.lines.size() == f.portals.size() / 2 * line_sums &&
-            t.through.size() == (f.portals.empty() ? 0 : cells * (2 + f.portals.size())));
+            t.through.size() == cells * sums_through(f));
 }
 
 template <class T>

@@ -35,8 +35,7 @@ float density(const std::vector<StrataNode>& nodes, uint32_t root, const Vec2& a
 
 float disk_density(const std::vector<StrataNode>& nodes, uint32_t root, const Vec2& square) {
   const Vec3 at = from_square(square);
-  const float x2 = at.x * at.x, y2 = at.y * at.y, m2 = std::max(x2, y2);
-  return density(nodes, root, square) * (m2 > 0 ? (x2 + y2) / m2 : 1) * 0.25f;
+  return density(nodes, root, square) * square_density({at.x, at.y, 1});
 }
 
 Vec2 sample(const std::vector<StrataNode>& nodes, uint32_t root, const Vec2& u, float& density) {

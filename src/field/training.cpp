@@ -26,7 +26,7 @@ void resize(Tallies& t, const Field& f) {
   t.directs.assign(f.cells.size(), 0);
   t.visits.assign(f.cells.size(), 0);
   t.lines.assign(f.portals.size() / 2 * line_sums, 0);
-  t.through.assign(f.portals.empty() ? 0 : f.cells.size() * (2 + f.portals.size()), 0);
+  t.through.assign(f.cells.size() * sums_through(f), 0);
 }
 
 // What is brightest decides how far away things are. (G8)
@@ -41,7 +41,7 @@ void add_distance(const Fields& fields, const Field& field, Tallies& tallies, ui
 void add_crossings(const Fields& fields, const Field& field, Tallies& tallies, uint32_t cell, const Record& r) {
   const uint32_t n = uint32_t(field.portals.size() / 2);
   const double weight = std::min(double(r.weight), largest_weight), carried = weight * r.value / field.unit;
-  int64_t* const sums = tallies.through.data() + size_t(cell) * (2 + 2 * n);
+  int64_t* const sums = tallies.through.data() + cell * sums_through(field);
   const auto count = [&](uint32_t at) {
     add(sums[at], to_fixed(weight, weight_step)), add(sums[at + 1], to_fixed(carried, value_step));
   };

@@ -23,7 +23,7 @@ struct FieldCell {
   float visits = 0;  ///< vertices of subpaths of the side that it guides, per area of the cell and path
   float near = 0;    ///< 1 / R of (G7): reciprocal of how far away the things are that its strata hold [1/m]
   uint32_t portal = none;  ///< through which the most arrives of what comes through one (CellTable::portals)
-  float through = 0;       ///< h of (G11): share of the directions that are drawn through it
+  float through = 0;       ///< share of the directions to be drawn through it, as far as it is trusted
 };
 
 /// One learned field: strata of all cells. Hot: what sampling reads. mean and weight stand beside the nodes.

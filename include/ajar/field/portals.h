@@ -21,6 +21,9 @@ struct Crossing {
   Vec2 square{0};        ///< on the disk, as the square of its strata (G1)
   float distance = 0;    ///< from the ray's origin
 };
+/// w: unit. False where the ray misses the disk.
+bool cross(const Portal& portal, uint32_t number, const Vec3& p, const Vec3& w, Crossing& out);
+
 /// Paths through an opening as lines, to find where they are closest together: sums of (G13), in fixed point.
 inline constexpr size_t line_sums = 11;
 /// p, w: a ray through the portal; weight: what it carries.
@@ -28,13 +31,10 @@ void record_line(const Portal& portal, const Vec3& p, const Vec3& w, double weig
 /// Where on its axis, so far from the wall at most, lines through a portal are closest together.
 float narrowest(const Portal& portal, const double* sums, float most);
 
-/// w: unit. False where the ray misses the disk.
-bool cross(const Portal& portal, uint32_t number, const Vec3& p, const Vec3& w, Crossing& out);
-
 /// The cell's portal, as it is seen from p.
 struct Opening {
   uint32_t portal = none, cell = none;
-  float share = 0;  ///< of the field's directions that are drawn through it: trust times h of (G11)
+  float share = 0;  ///< h of (G11): of the field's directions, those that are drawn through it
 };
 Opening opening(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p);
 /// Density per solid angle with which a direction is drawn through it. (G12)

@@ -29,6 +29,9 @@ struct Tallies {
                                          ///< portal
 };
 
+/// How many of Tallies::through a cell has.
+inline size_t sums_through(const Field& f) { return f.portals.empty() ? 0 : 2 + f.portals.size(); }
+
 struct Training {
   Tallies q, w;
   ViewTallies views;
