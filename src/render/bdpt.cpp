@@ -13,6 +13,7 @@ struct Work {
   Sample& sample;
   Scratch& scratch;
   double light_share = 1;  // of the light walk, for s = 2
+  float pixel = -1;        // radiance that the pixel is expected to have; 0: fields do not know; -1: not asked yet
 };
 
 float weigh(const Work& work, Candidate& c) {
@@ -49,12 +50,22 @@ bool add_if_visible(Work& work, Candidate& c, int s, int t) {
   return true;
 }
 
+// Radiance that a vertex is expected to scatter, as errors are judged against it: never next to nothing.
+float expected_radiance(const Fields& fields, const Guide& guide) {
+  const float out = scatters(guide) * fields.q.cells[guide.cell].total;
+  return std::sqrt(sqr(out) + sqr(0.02f * float(fields.q.unit)));
+}
+
 // What a pixel's error counts for where the lens sees this vertex: errors are judged relative to the image, so the
 // lens's importance is divided by what the field expects the pixel to be. (G5)
 float relative_importance(const Fields& fields, const Guide& guide) {
-  const float out = scatters(guide) * fields.q.cells[guide.cell].total;
-  const float typical = float(fields.q.unit);
-  return typical / std::sqrt(sqr(out) + sqr(0.02f * typical));
+  return float(fields.q.unit) / expected_radiance(fields, guide);
+}
+
+// Radiance that the camera subpath, at the first vertex that can be joined, expects its pixel to have.
+float expected_pixel(const Fields* fields, const Vertex& v) {
+  const bool known = fields && v.guide.cell != none && fields->q.cells[v.guide.cell].total > 0;
+  return known ? luminance(v.beta) * expected_radiance(*fields, v.guide) : 0;
 }
 
 // What a vertex received from the light, or the lens, itself: nothing where something is in the way.
@@ -149,23 +160,27 @@ void join_next_event(Work& work) {
   if (work.sample.teaches) teach_lights(work, camera[t - 1], c.point, lit ? max_component(c.arrives) : 0);
 }
 
-// s >= 2: one of all light vertices of the chunk.
+// s >= 2: some of all light vertices of the chunk.
 void join_stored(Work& work) {
   const Job& job = work.job;
   const LightStore& store = work.scratch.halves->store;
   const Subpath& camera = work.scratch.camera;
   const Vertex& v = camera[camera.n - 1];
-  StoreChoice choice;
-  Candidate c;
-  if (!choose(store, v, job.walk.inner_share, job.walk.max_edges + 1 - camera.n, work.sample.sampler, choice)) return;
-  const LightStore::Place& at = *choice.place;
-  if (join_vertices(store.subpath(at), at.share, camera.first(camera.n), job.walk.light_paths, c)) {
-    c.value *= choice.weight;
-    const bool seen = add_if_visible(work, c, at.s, camera.n);
-    if (work.sample.teaches)
-      record_join(job.walk.fields->views, job.training->views, region_of(v.guide), at.region, seen);
+  if (work.pixel < 0) work.pixel = expected_pixel(job.walk.fields, v);
+  const float worth = work.pixel > 0 ? luminance(v.beta) * scatters(v.guide) / work.pixel : 0;
+  std::vector<StoreChoice>& choices = work.scratch.choices;
+  choose(store, v, job.walk.inner_share, job.walk.max_edges + 1 - camera.n, worth, work.sample.sampler, choices);
+  for (const StoreChoice& choice : choices) {
+    const LightStore::Place& at = *choice.place;
+    Candidate c;
+    if (join_vertices(store.subpath(at), at.share, camera.first(camera.n), job.walk.light_paths, c)) {
+      c.value *= choice.weight;
+      const bool seen = add_if_visible(work, c, at.s, camera.n);
+      if (work.sample.teaches)
+        record_join(job.walk.fields->views, job.training->views, region_of(v.guide), at.region, seen);
+    }
+    charge_join(work.scratch, at.s, camera.n);
   }
-  charge_join(work.scratch, at.s, camera.n);
 }
 
 // All joins at the camera subpath's last vertex.

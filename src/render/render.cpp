@@ -222,6 +222,9 @@ double pixels_of(const Film& film, uint32_t from, uint32_t count) {
   return sum;
 }
 
+// What joins of a guided vertex count for in the weights: about as many are made of each, where it matters (J3).
+constexpr double guided_joins = 2;
+
 // What merges beyond the first vertex at which a camera subpath is merged count for (K3). They share the walk that
 // found it, so that many of them tell hardly more than one; measured (results.md).
 constexpr double merge_inner = 0.01;
@@ -348,7 +351,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   }
   if (is_guided(options.integrator)) {
     job.guided = true;
-    job.walk.inner_share = film.splats ? 1 : 0;
+    job.walk.inner_share = film.splats ? guided_joins : 0;
   }
   double wall0 = 0, cpu0 = 0;
   const auto start_clocks = [&] {

@@ -108,7 +108,8 @@ std::vector<double> brought(const LightStore& store, const Subpath& camera, int 
 // The mean of weight x g over draws is the sum of g over all places, over paths; and a weight wrong by a little would
 // be seen. Returns how many vertices had something to bring.
 int expect_unbiased(const LightStore& store, const std::vector<Subpath>& cameras, int most = most_edges,
-                    int n = 40'000) {
+                    int n = 40'000, float worth = 0) {
+  std::vector<StoreChoice> choices;
   int lit = 0;
   for (size_t k = 0; k < cameras.size(); ++k) {
     const std::vector<double> g = brought(store, cameras[k], most);
@@ -117,10 +118,12 @@ int expect_unbiased(const LightStore& store, const std::vector<Subpath>& cameras
     Sampler sampler = draws(k);
     double sum = 0, squares = 0;
     for (int i = 0; i < n; ++i) {
-      StoreChoice choice;
-      if (!choose(store, end_of(cameras[k]), 1, most, sampler, choice)) continue;
-      EXPECT_TRUE(choice.weight > 0 && choice.weight < infinity);
-      const double x = double(choice.weight) * g[index_of(store, choice)];
+      choose(store, end_of(cameras[k]), 1, most, worth, sampler, choices);
+      double x = 0;
+      for (const StoreChoice& choice : choices) {
+        EXPECT_TRUE(choice.weight > 0 && choice.weight < infinity);
+        x += double(choice.weight) * g[index_of(store, choice)];
+      }
       sum += x, squares += x * x;
     }
     const double mean = sum / n, error = std::sqrt(std::max(squares / n - mean * mean, 0.0) / n);
@@ -216,6 +219,32 @@ TEST(LightStore, StandsForAllPlacesWhateverViewsSay) {
   EXPECT_GT(expect_unbiased(room.store(64), room.cameras(12)), 8);
 }
 
+// What is worth little is joined rarely and counts for the more, what is worth much often. (J3)
+TEST(LightStore, StandsForAllPlacesHoweverManyAreJoined) {
+  const Room room;
+  const LightStore store = room.store(64);
+  double before = 0;
+  for (const float worth : {1e-9f, 0.003f, 0.3f, 1e9f}) {
+    EXPECT_GT(expect_unbiased(store, room.cameras(6), most_edges, 40'000, worth), 3) << worth;
+    std::vector<StoreChoice> choices;
+    Sampler sampler = draws(3);
+    size_t joins = 0, vertices = 0;
+    for (const Subpath& camera : room.cameras(6))
+      for (int i = 0; i < 1000; ++i) {
+        choose(store, end_of(camera), 1, most_edges, 0, sampler, choices);
+        vertices += choices.size();
+        choose(store, end_of(camera), 1, most_edges, worth, sampler, choices);
+        joins += choices.size();
+      }
+    const double mean = double(joins) / double(vertices);
+    EXPECT_GT(mean, before) << worth;
+    EXPECT_GT(mean, 0.08) << worth;
+    EXPECT_LT(mean, 17) << worth;
+    before = mean;
+  }
+  EXPECT_GT(before, 15);
+}
+
 // One place; a full block; one more, which makes two blocks of unequal number.
 TEST(LightStore, StandsForFewPlaces) {
   const Room room;
@@ -232,12 +261,12 @@ TEST(LightStore, StandsForPlacesOfShortSubpathsAlone) {
   const LightStore store = room.store(64);
   EXPECT_GT(expect_unbiased(store, room.cameras(6), 2), 3);
   Sampler sampler = draws(0);
-  StoreChoice choice;
+  std::vector<StoreChoice> choices;
   for (const Subpath& camera : room.cameras(12))
-    for (int i = 0; i < 200; ++i)
-      if (choose(store, end_of(camera), 1, 2, sampler, choice)) {
-        ASSERT_EQ(choice.place->s, 2);
-      }
+    for (int i = 0; i < 200; ++i) {
+      choose(store, end_of(camera), 1, 2, 0, sampler, choices);
+      for (const StoreChoice& choice : choices) ASSERT_EQ(choice.place->s, 2);
+    }
 }
 
 TEST(LightStore, StandsForAllPlacesAtAnySize) {
@@ -275,14 +304,17 @@ TEST(LightStore, ChoosesByWhatPlacesWouldBring) {
   const LightStore store = room.store(40);
   ASSERT_GT(store.blocks.size(), 2u);
   constexpr int n = 100'000;
+  std::vector<StoreChoice> choices;
   const std::vector<Subpath> cameras = room.cameras(5);
   for (size_t k = 0; k < cameras.size(); ++k) {
     const std::vector<double> p = probabilities(store, room, end_of(cameras[k]));
     std::vector<double> drawn(p.size());
     Sampler sampler = draws(100 + k);
-    for (int i = 0; i < n; ++i)
-      if (StoreChoice choice; choose(store, end_of(cameras[k]), 1, most_edges, sampler, choice))
-        drawn[index_of(store, choice)] += 1;
+    for (int i = 0; i < n; ++i) {
+      choose(store, end_of(cameras[k]), 1, most_edges, 0, sampler, choices);
+      ASSERT_LE(choices.size(), 1u);
+      for (const StoreChoice& choice : choices) drawn[index_of(store, choice)] += 1;
+    }
     double statistic = 0, rare = 0, rare_drawn = 0;
     int dof = 0;
     const auto test = [&](double seen, double expected) {
@@ -310,12 +342,17 @@ TEST(LightStore, NothingIsChosenFromNothing) {
   add(black, {}, 1);
   finish(black, 1);
   EXPECT_EQ(black.paths, 1u);
-  StoreChoice choice;
+  std::vector<StoreChoice> choices;
+  const auto chooses = [&](const LightStore& store, const Vertex& c, int most, Sampler& sampler) {
+    choices.resize(3);  // of the vertex before
+    choose(store, c, 1, most, 1e9f, sampler, choices);
+    return !choices.empty();
+  };
   for (const Subpath& camera : room.cameras(20)) {
     Sampler sampler = draws(1);
-    EXPECT_FALSE(choose(empty, end_of(camera), 1, most_edges, sampler, choice));
-    EXPECT_FALSE(choose(black, end_of(camera), 1, most_edges, sampler, choice));
-    EXPECT_FALSE(choose(full, end_of(camera), 1, 1, sampler, choice)) << "no subpath is so short";
+    EXPECT_FALSE(chooses(empty, end_of(camera), most_edges, sampler));
+    EXPECT_FALSE(chooses(black, end_of(camera), most_edges, sampler));
+    EXPECT_FALSE(chooses(full, end_of(camera), 1, sampler)) << "no subpath is so short";
     EXPECT_EQ(sampler.pair, 3u) << "each took one pair of numbers all the same";
   }
 }
@@ -329,13 +366,15 @@ TEST(LightStore, NothingBehindIsChosen) {
     const Vertex& c = end_of(camera);
     for (const LightStore::Place& at : store.places) behind += !may_scatter(c.guide, store.subpath(at).back().p - c.p);
     Sampler sampler = draws(2);
+    std::vector<StoreChoice> choices;
     for (int i = 0; i < 1000; ++i) {
-      StoreChoice choice;
-      if (!choose(store, c, 1, most_edges, sampler, choice)) continue;
-      const Vertex& a = store.subpath(*choice.place).back();
-      ASSERT_TRUE(may_scatter(c.guide, a.p - c.p));
-      ASSERT_TRUE(may_scatter(a.guide, c.p - a.p));
-      ++chosen;
+      choose(store, c, 1, most_edges, 0, sampler, choices);
+      for (const StoreChoice& choice : choices) {
+        const Vertex& a = store.subpath(*choice.place).back();
+        ASSERT_TRUE(may_scatter(c.guide, a.p - c.p));
+        ASSERT_TRUE(may_scatter(a.guide, c.p - a.p));
+        ++chosen;
+      }
     }
   }
   EXPECT_GT(chosen, 10'000);

@@ -60,9 +60,11 @@ void finish(LightStore& store, std::span<const float> near);
 /// Adds all of another store, before the blocks are made.
 void append(LightStore& store, const LightStore& more);
 /// Draws from the places of one block in proportion to what they would bring unoccluded times the chance that they are
-/// seen (resampling: Talbot et al. 2005). most: largest s. False where none would bring anything. Takes one pair of
-/// numbers.
-bool choose(const LightStore& store, const Vertex& camera, double inner, int most, Sampler& sampler, StoreChoice& out);
+/// seen (resampling: Talbot et al. 2005), evenly spaced over their sums. worth: what the camera vertex makes of what is
+/// brought, relative to what its pixel is expected to be; the more, the more are drawn, in the mean a tenth to 16 (J3).
+/// 0, where that is not known: one. most: largest s. Takes one pair of numbers.
+void choose(const LightStore& store, const Vertex& camera, double inner, int most, float worth, Sampler& sampler,
+            std::vector<StoreChoice>& out);
 
 /// What all places of a store would bring to one camera vertex.
 struct Expectation {
