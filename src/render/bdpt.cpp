@@ -50,22 +50,23 @@ bool add_if_visible(Work& work, Candidate& c, int s, int t) {
   return true;
 }
 
-// Radiance that a vertex is expected to scatter, as errors are judged against it: never next to nothing.
-float expected_radiance(const Fields& fields, const Guide& guide) {
+// Radiance that a vertex is expected to scatter, as errors are judged against it: about `least` of a typical value at
+// least.
+float expected_radiance(const Fields& fields, const Guide& guide, float least) {
   const float out = scatters(guide) * fields.q.cells[guide.cell].total;
-  return std::sqrt(sqr(out) + sqr(0.02f * float(fields.q.unit)));
+  return std::sqrt(sqr(out) + sqr(least * float(fields.q.unit)));
 }
 
 // What a pixel's error counts for where the lens sees this vertex: errors are judged relative to the image, so the
 // lens's importance is divided by what the field expects the pixel to be. (G5)
 float relative_importance(const Fields& fields, const Guide& guide) {
-  return float(fields.q.unit) / expected_radiance(fields, guide);
+  return float(fields.q.unit) / expected_radiance(fields, guide, 0.02f);
 }
 
 // Radiance that the camera subpath, at the first vertex that can be joined, expects its pixel to have.
 float expected_pixel(const Fields* fields, const Vertex& v) {
   const bool known = fields && v.guide.cell != none && fields->q.cells[v.guide.cell].total > 0;
-  return known ? luminance(v.beta) * expected_radiance(*fields, v.guide) : 0;
+  return known ? luminance(v.beta) * expected_radiance(*fields, v.guide, 0.002f) : 0;
 }
 
 // What a vertex received from the light, or the lens, itself: nothing where something is in the way.
@@ -80,9 +81,8 @@ void teach_direct(const Work& work, Vertex& v, float received) {
 }
 
 // Which light the vertex asked for, and what it got from it: nothing where something is in the way.
-void teach_lights(const Work& work, const Vertex& v, const LightPoint& point, float arrives) {
+void teach_light(const Work& work, const Vertex& v, const LightPoint& point, float arrives) {
   record_next_event(*work.job.scene, v.guide, v.p, *work.job.training, point, arrives);
-  if (!work.job.guided) record_place(v.guide, v.ng, *work.job.training, work.scratch.sightings);
   charge(work.scratch, work.scratch.ledger->learn_ticks);
 }
 
@@ -146,28 +146,48 @@ float share_of_next_event(const Work& work, const Candidate& c) {
   return float(1 / (1 + raise(work.job.walk.heuristic, ratio(c.light.other, c.light.own * c.shares.light_first))));
 }
 
+// What the camera subpath's last vertex makes of irradiance, relative to what its pixel is expected to be; 0: fields do
+// not know.
+float worth(Work& work, const Vertex& v) {
+  if (work.pixel < 0) work.pixel = expected_pixel(work.job.walk.fields, v);
+  return work.pixel > 0 ? luminance(v.beta) * scatters(v.guide) / work.pixel : 0;
+}
+
+// Rays to lights: the more, the more of the pixel's light is expected of them. (J4)
+int next_events(const Work& work, const Vertex& v, float worth) {
+  if (!(worth > 0) || v.guide.cell == none) return 1;
+  const float direct = work.job.walk.fields->q.cells[v.guide.cell].direct;
+  return int(std::clamp(3 * std::sqrt(worth * direct), 1.0f, 16.0f));
+}
+
 // s = 1: next-event estimation.
-void join_next_event(Work& work) {
+void join_next_event(Work& work, float worth) {
   const Job& job = work.job;
-  Subpath& camera = work.scratch.camera;
-  const int t = camera.n;
+  Vertex& v = work.scratch.camera[work.scratch.camera.n - 1];
+  const int t = work.scratch.camera.n;
   if (!job.next_event || job.scene->lights.empty()) return;
-  Candidate c;
-  const bool lit = join_light(*job.scene, job.walk.fields, work.sample.sampler, camera, t, job.walk.light_paths, c) &&
-                   add_if_visible(work, c, 1, t);
-  charge_join(work.scratch, 1, t);
-  teach_direct(work, camera[t - 1], lit ? luminance(c.arrives) * share_of_next_event(work, c) : 0);
-  if (work.sample.teaches) teach_lights(work, camera[t - 1], c.point, lit ? max_component(c.arrives) : 0);
+  const int count = next_events(work, v, worth);
+  float received = 0;
+  for (int i = 0; i < count; ++i) {
+    Candidate c;
+    const bool found =
+        join_light(*job.scene, job.walk.fields, work.sample.sampler, work.scratch.camera, t, job.walk.light_paths, c);
+    c.value /= float(count);
+    const bool lit = found && add_if_visible(work, c, 1, t);
+    charge_join(work.scratch, 1, t);
+    if (lit) received += luminance(c.arrives) * share_of_next_event(work, c);
+    if (work.sample.teaches) teach_light(work, v, c.point, lit ? max_component(c.arrives) : 0);
+  }
+  teach_direct(work, v, received / float(count));
+  if (work.sample.teaches && !job.guided) record_place(v.guide, v.ng, *job.training, work.scratch.sightings);
 }
 
 // s >= 2: some of all light vertices of the chunk.
-void join_stored(Work& work) {
+void join_stored(Work& work, float worth) {
   const Job& job = work.job;
   const LightStore& store = work.scratch.halves->store;
   const Subpath& camera = work.scratch.camera;
   const Vertex& v = camera[camera.n - 1];
-  if (work.pixel < 0) work.pixel = expected_pixel(job.walk.fields, v);
-  const float worth = work.pixel > 0 ? luminance(v.beta) * scatters(v.guide) / work.pixel : 0;
   std::vector<StoreChoice>& choices = work.scratch.choices;
   choose(store, v, job.walk.inner_share, job.walk.max_edges + 1 - camera.n, worth, work.sample.sampler, choices);
   for (const StoreChoice& choice : choices) {
@@ -191,9 +211,10 @@ void join_all(Work& work, const Surface& surface) {
   const int t = camera.n;
   join_surface(work, surface);
   if (t > job.walk.max_edges || !connectable(camera[t - 1].guide)) return;
-  join_next_event(work);
+  const float of_pixel = worth(work, camera[t - 1]);
+  join_next_event(work, of_pixel);
   if (job.photons) join_merged(job, work.sample, work.scratch);
-  if (job.light_half) return join_stored(work);
+  if (job.light_half) return join_stored(work, of_pixel);
   const int most = std::min(light.n, job.walk.max_edges + 1 - t);
   Candidate c;
   for (int s = 2; s <= most; ++s)

@@ -107,8 +107,8 @@ std::vector<double> brought(const LightStore& store, const Subpath& camera, int 
 
 // The mean of weight x g over draws is the sum of g over all places, over paths; and a weight wrong by a little would
 // be seen. Returns how many vertices had something to bring.
-int expect_unbiased(const LightStore& store, const std::vector<Subpath>& cameras, int most = most_edges,
-                    int n = 40'000, float worth = 0) {
+int expect_unbiased(const LightStore& store, const std::vector<Subpath>& cameras, int most = most_edges, int n = 40'000,
+                    float worth = 0) {
   std::vector<StoreChoice> choices;
   int lit = 0;
   for (size_t k = 0; k < cameras.size(); ++k) {
