@@ -133,8 +133,8 @@ void append(LightStore& store, const LightStore& more) {
 
 namespace {
 // How many joins a camera vertex is worth that would bring so much of its pixel. What comes of a join rises with the
-// root of what was expected, since what seems to bring most is mostly hidden: measured. (J3)
-float joins_for(float brings) { return std::clamp(3 * std::sqrt(brings), 0.1f, 16.0f); }
+// root of what was expected, since what seems to bring most is mostly hidden: measured.
+float joins_for(float brings) { return std::clamp(3 * std::sqrt(brings), 0.1f, 16.0f); }  // (J3)
 }  // namespace
 
 void choose(const LightStore& store, const Vertex& camera, double inner, int most, float worth, Sampler& sampler,

@@ -153,11 +153,11 @@ float worth(Work& work, const Vertex& v) {
   return work.pixel > 0 ? luminance(v.beta) * scatters(v.guide) / work.pixel : 0;
 }
 
-// Rays to lights: the more, the more of the pixel's light is expected of them. (J4)
+// Rays to lights: the more, the more of the pixel's light is expected of them.
 int next_events(const Work& work, const Vertex& v, float worth) {
   if (!(worth > 0) || v.guide.cell == none) return 1;
   const float direct = work.job.walk.fields->q.cells[v.guide.cell].direct;
-  return int(std::clamp(3 * std::sqrt(worth * direct), 1.0f, 16.0f));
+  return int(std::clamp(3 * std::sqrt(worth * direct), 1.0f, 16.0f));  // (J4)
 }
 
 // s = 1: next-event estimation.
