@@ -148,7 +148,7 @@ float share_of_next_event(const Work& work, const Candidate& c) {
 
 // What the camera subpath's last vertex makes of irradiance, relative to what its pixel is expected to be; 0: fields do
 // not know.
-float worth(Work& work, const Vertex& v) {
+float worth_of(Work& work, const Vertex& v) {
   if (work.pixel < 0) work.pixel = expected_pixel(work.job.walk.fields, v);
   return work.pixel > 0 ? luminance(v.beta) * scatters(v.guide) / work.pixel : 0;
 }
@@ -156,8 +156,8 @@ float worth(Work& work, const Vertex& v) {
 // Rays to lights: the more, the more of the pixel's light is expected of them.
 int next_events(const Work& work, const Vertex& v, float worth) {
   if (!(worth > 0) || v.guide.cell == none) return 1;
-  const float direct = work.job.walk.fields->q.cells[v.guide.cell].direct;
-  return int(std::clamp(3 * std::sqrt(worth * direct), 1.0f, 16.0f));  // (J4)
+  const float brings = worth * work.job.walk.fields->q.cells[v.guide.cell].direct;
+  return brings > 0 ? int(std::clamp(3 * std::sqrt(brings), 1.0f, 16.0f)) : 1;  // (J4)
 }
 
 // s = 1: next-event estimation.
@@ -211,10 +211,10 @@ void join_all(Work& work, const Surface& surface) {
   const int t = camera.n;
   join_surface(work, surface);
   if (t > job.walk.max_edges || !connectable(camera[t - 1].guide)) return;
-  const float of_pixel = worth(work, camera[t - 1]);
-  join_next_event(work, of_pixel);
+  const float worth = worth_of(work, camera[t - 1]);
+  join_next_event(work, worth);
   if (job.photons) join_merged(job, work.sample, work.scratch);
-  if (job.light_half) return join_stored(work, of_pixel);
+  if (job.light_half) return join_stored(work, worth);
   const int most = std::min(light.n, job.walk.max_edges + 1 - t);
   Candidate c;
   for (int s = 2; s <= most; ++s)
