@@ -155,8 +155,9 @@ void choose(const LightStore& store, const Vertex& camera, double inner, int mos
   const float share = float(double(n) / store.paths);
   const float count = worth > 0 ? joins_for(worth * share * sum) : 1;
   for (float mark = u.y; mark < count; ++mark) {
+    const float at = mark / count * sum;
     uint32_t i = 0;  // sums only rise: as many as the mark is past
-    for (uint32_t j = 0; j + 1 < LightStore::width; ++j) i += !(mark * sum < sums[j] * count);
+    for (uint32_t j = 0; j + 1 < LightStore::width; ++j) i += !(at < sums[j]);
     if (!(values[i] > 0)) continue;
     const LightStore::Place& place = store.places[i * n + block];
     out.push_back({&place, share * place.counts * sum / (values[i] * count)});

@@ -50,8 +50,8 @@ bool add_if_visible(Work& work, Candidate& c, int s, int t) {
   return true;
 }
 
-// Radiance that a vertex is expected to scatter, as errors are judged against it: about `least` of a typical value at
-// least.
+// Radiance that a vertex is expected to scatter, never less than this share of a typical value: errors are judged
+// against it.
 float expected_radiance(const Fields& fields, const Guide& guide, float least) {
   const float out = scatters(guide) * fields.q.cells[guide.cell].total;
   return std::sqrt(sqr(out) + sqr(least * float(fields.q.unit)));
@@ -163,23 +163,25 @@ int next_events(const Work& work, const Vertex& v, float worth) {
 // s = 1: next-event estimation.
 void join_next_event(Work& work, float worth) {
   const Job& job = work.job;
-  Vertex& v = work.scratch.camera[work.scratch.camera.n - 1];
-  const int t = work.scratch.camera.n;
+  Subpath& camera = work.scratch.camera;
+  const int t = camera.n;
+  Vertex& v = camera[t - 1];
   if (!job.next_event || job.scene->lights.empty()) return;
   const int count = next_events(work, v, worth);
   float received = 0;
   for (int i = 0; i < count; ++i) {
     Candidate c;
-    const bool found =
-        join_light(*job.scene, job.walk.fields, work.sample.sampler, work.scratch.camera, t, job.walk.light_paths, c);
+    const bool found = join_light(*job.scene, job.walk.fields, work.sample.sampler, camera, t, job.walk.light_paths, c);
     c.value /= float(count);
     const bool lit = found && add_if_visible(work, c, 1, t);
     charge_join(work.scratch, 1, t);
+    if (!work.sample.teaches) continue;
     if (lit) received += luminance(c.arrives) * share_of_next_event(work, c);
-    if (work.sample.teaches) teach_light(work, v, c.point, lit ? max_component(c.arrives) : 0);
+    teach_light(work, v, c.point, lit ? max_component(c.arrives) : 0);
   }
+  if (!work.sample.teaches) return;
   teach_direct(work, v, received / float(count));
-  if (work.sample.teaches && !job.guided) record_place(v.guide, v.ng, *job.training, work.scratch.sightings);
+  if (!job.guided) record_place(v.guide, v.ng, *job.training, work.scratch.sightings);
 }
 
 // s >= 2: some of all light vertices of the chunk.
