@@ -11,15 +11,16 @@ namespace {
 constexpr FileKind carried_kind = {"AJARan03", "carried field file", "an animation leaves one beside its frames",
                                    "remove it: the fields are learned again from the first frame on"};
 
-// So many lessons of so many passes each.
+// So many lessons of so many passes each, and no pass more.
 bool give_lessons(const Scene& scene, const Accel& accel, RenderOptions options, uint32_t lessons, uint32_t passes,
                   RenderState& state, const Monitor& monitor) {
   Learning& l = state.learning;
   l.lesson = passes;
   l.train = l.fields.generation + lessons;
   options.spp = 0, options.seconds = 0, options.cpu_seconds = 0, options.noise = 0, options.techniques = false;
-  render(scene, accel, options, state, monitor);
-  return l.fields.generation >= l.train;
+  render(scene, accel, options, state,
+         [&](const RenderState& now) { return in_training(now.learning) && (!monitor || monitor(now)); });
+  return !in_training(l);
 }
 
 }  // namespace

@@ -130,6 +130,26 @@ TEST(Sequence, CarriedFieldsLearnMore) {
   EXPECT_LT(doubted, 0.6 * kept);
 }
 
+// What teaches is in no image, so that every pass beyond the lessons would be lost.
+TEST(Sequence, TeachesInAsManyPassesAsItSays) {
+  const Scene scene = room_at(0);
+  const Accel accel(scene);
+  const SequenceOptions s = usual();
+  for (const char* integrator : {"guided-bdpt", "vpl"}) {
+    uint32_t passes = 0;
+    const Monitor count = [&](const RenderState& now) {
+      passes = std::max(passes, now.film.dropped + now.film.passes - now.learning.first + (now.film.chunks > 0));
+      return true;
+    };
+    const Fields begun = *teach(scene, accel, statistical(integrator), s, nullptr, {}, 0, count);
+    EXPECT_LE(passes, s.begin) << integrator;
+    const Carried carried{0, begun};
+    passes = 0;
+    teach(scene, accel, statistical(integrator), s, &carried, {}, 1, count);
+    EXPECT_LE(passes, s.teach + s.teach % 2) << integrator;
+  }
+}
+
 TEST(Sequence, FilesGiveBackWhatIsCarried) {
   const Scene scene = room_at(0);
   const Accel accel(scene);
