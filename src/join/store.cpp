@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "ajar/join/visibility.h"
+
 namespace ajar {
 using Values = std::array<float, LightStore::width>;
 
@@ -22,7 +24,7 @@ void put(LightStore::Block& b, uint32_t i, const Vertex& v, const LightStore::Pl
   b.flux[i] = at.flux * at.counts;
   b.near[i] = near;
   b.behind[i] = v.guide.bsdf.opaque ? 0.0f : -1.0f;
-  b.region[i] = at.region, b.s[i] = at.s;
+  b.region[i] = at.region, b.path[i] = at.path, b.s[i] = at.s;
 }
 
 // What joins bring, up to a factor that all of a camera vertex share: unoccluded, both ends taken for diffuse, with the
@@ -164,37 +166,52 @@ void choose(const LightStore& store, const Vertex& camera, double inner, int mos
   }
 }
 
-float expect_all(const LightStore& store, const Vertex& camera, int most, Expectation& out) {
+void expect_all(const LightStore& store, const Vertex& camera, int most, const Visibility* visibility,
+                Expectation& out) {
   out.values.resize(store.blocks.size());
-  out.sums.resize(store.blocks.size());
-  float sum = 0;
+  out.sum = 0;
   for (size_t block = 0; block < store.blocks.size(); ++block) {
     Values& values = out.values[block];
     expect(store.blocks[block], camera, 0, most, values);
     apply_chances(store.blocks[block], camera, values);
+    if (visibility)
+      for (uint32_t i = 0; i < LightStore::width; ++i) values[i] *= visibility->blocks[block].chance[i];
     std::array<float, 8> part{};
     for (uint32_t i = 0; i < LightStore::width; ++i) part[i % 8] += values[i];
-    out.sums[block] = sum += ((part[0] + part[1]) + (part[2] + part[3])) + ((part[4] + part[5]) + (part[6] + part[7]));
+    out.sum += ((part[0] + part[1]) + (part[2] + part[3])) + ((part[4] + part[5]) + (part[6] + part[7]));
   }
-  return sum / float(std::max(store.paths, 1u));
 }
 
-void choose_some(const LightStore& store, const Expectation& expected, int count, float u,
+namespace {
+// A number in [0, 1) of each light vertex of a block.
+void draw_numbers(const LightStore::Block& b, uint32_t key, Values& out) {
+  for (uint32_t i = 0; i < LightStore::width; ++i) {
+    uint32_t h = (b.path[i] * 64 + uint32_t(b.s[i])) * 0x9e3779b9u ^ key;
+    h = (h ^ h >> 16) * 0x85ebca6bu;
+    h = (h ^ h >> 13) * 0xc2b2ae35u;
+    out[i] = float((h ^ h >> 16) >> 8) * 0x1p-24f;
+  }
+}
+}  // namespace
+
+void choose_some(const LightStore& store, const Expectation& expected, int count, uint32_t key,
                  std::vector<StoreChoice>& out) {
   out.clear();
-  const float sum = expected.sums.empty() ? 0 : expected.sums.back();
-  if (!(sum > 0) || !(sum < infinity)) return;
-  size_t block = 0;
-  for (int k = 0; k < count; ++k) {
-    const float mark = (float(k) + u) / float(count) * sum;
-    while (block + 1 < expected.sums.size() && !(mark < expected.sums[block])) ++block;
+  if (!(expected.sum > 0) || !(expected.sum < infinity)) return;
+  const float per_value = float(count) / expected.sum;
+  for (size_t block = 0; block < expected.values.size(); ++block) {
     const Values& values = expected.values[block];
-    float rest = mark - (block > 0 ? expected.sums[block - 1] : 0);
-    uint32_t i = 0;
-    while (i + 1 < LightStore::width && !(rest < values[i])) rest -= values[i++];
-    if (!(values[i] > 0)) continue;  // rounding
-    const LightStore::Place& place = store.places[block * LightStore::width + i];
-    out.push_back({&place, float(place.counts * double(sum) / (double(count) * values[i] * store.paths))});
+    Values numbers;
+    draw_numbers(store.blocks[block], key, numbers);
+    float most = -1;
+    for (uint32_t i = 0; i < LightStore::width; ++i) most = std::max(most, values[i] * per_value - numbers[i]);
+    if (!(most > 0)) continue;
+    for (uint32_t i = 0; i < LightStore::width; ++i) {
+      const float chance = values[i] * per_value;
+      if (!(numbers[i] < chance)) continue;
+      const LightStore::Place& place = store.places[block * LightStore::width + i];
+      out.push_back({&place, place.counts / (std::min(chance, 1.0f) * float(store.paths))});
+    }
   }
 }
 

@@ -6,6 +6,7 @@
 #include "ajar/join/connect.h"
 #include "ajar/join/photons.h"
 #include "ajar/join/store.h"
+#include "ajar/join/visibility.h"
 #include "ajar/path/record.h"
 #include "ajar/render/learning.h"
 #include "ajar/render/ledger.h"
@@ -91,6 +92,7 @@ struct alignas(64) Scratch {
   Subpath camera, light;
   Expectation expected;  ///< of choices
   std::vector<StoreChoice> choices;
+  Visibility visibility;  ///< of lights, from what the lens sees of a chunk, in this pass
   std::vector<NearPhoton> near;  ///< to the vertex at hand
   Halves* halves = nullptr;      ///< of the chunk
   Halves own_halves;             ///< where those of one chunk are enough

@@ -45,7 +45,7 @@ const Integrator& find_integrator(const std::string& name) {
 constexpr uint32_t batch_chunks = 256;
 
 // Passes that teach fields before light vertices are placed through them.
-constexpr uint32_t vpl_training = 16;
+constexpr uint32_t vpl_training = 8;
 
 // Fewest, so that every thread finds work.
 constexpr uint32_t least_chunks = 16;
@@ -143,6 +143,7 @@ void trace_light_halves(const Job& job, Film& film, uint32_t chunk, Scratch& scr
 }
 
 void trace_camera_halves(const Job& job, Film& film, Scratch& scratch) {
+  if (job.vpls) start(job.vpls->store, scratch.visibility);
   for (auto& [sample, splat] : scratch.halves->samples) trace_pixel(job, film, sample, splat, scratch);
 }
 

@@ -104,19 +104,31 @@ void join_next_event(Work& work) {
   charge_join(work.scratch, 1, camera.n);
 }
 
+// Whether the lens sees the last vertex, itself or by way of delta events: such vertices of one tile are near each other.
+bool is_seen_from_lens(const Subpath& camera) {
+  for (int i = 1; i + 1 < camera.n; ++i)
+    if (!camera[i].delta) return false;
+  return true;
+}
+
 void join_vpls(Work& work) {
   const Job& job = work.job;
   Scratch& scratch = work.scratch;
   const Subpath& camera = scratch.camera;
   const LightStore& store = job.vpls->store;
   const Vertex& x = camera[camera.n - 1];
-  expect_all(store, x, job.walk.max_edges + 1 - camera.n, scratch.expected);
+  Visibility* const visibility = is_seen_from_lens(camera) ? &scratch.visibility : nullptr;
+  expect_all(store, x, job.walk.max_edges + 1 - camera.n, visibility, scratch.expected);
   const int joins = camera.n > 2 ? job.vpls->inner_joins : job.vpls->joins;
-  choose_some(store, scratch.expected, joins, work.sample.sampler.next1(), scratch.choices);
+  const uint32_t key = uint32_t(work.sample.sampler.next1() * 0x1p32f);
+  choose_some(store, scratch.expected, joins, key, scratch.choices);
   for (const StoreChoice& choice : scratch.choices) {
     const LightStore::Place& at = *choice.place;
     Candidate c;
-    if (join_vertices(store.subpath(at), at.share, camera.first(camera.n), 0, c) && is_free(work, c, at.s, camera.n)) {
+    const bool seen =
+        join_vertices(store.subpath(at), at.share, camera.first(camera.n), 0, c) && is_free(work, c, at.s, camera.n);
+    if (visibility) learn(*visibility, uint32_t(&at - store.places.data()), seen);
+    if (seen) {
       const double share = share_at(job, store.subpath(at), camera[camera.n - 1].p, c.light.other);
       c.value *= choice.weight;
       add(work, c, float(share) * share_of_camera(work, c), at.s, camera.n);

@@ -31,6 +31,7 @@ struct LightStore {
     float near[width] = {};    ///< (J1): geometry terms above 1 / near make the join the lesser strategy
     float behind[width] = {};  ///< -1 where it scatters to the other side too, else 0
     uint32_t region[width] = {};
+    uint32_t path[width] = {};
     int s[width] = {};
   };
   std::vector<Vertex> vertices;
@@ -66,16 +67,19 @@ void append(LightStore& store, const LightStore& more);
 void choose(const LightStore& store, const Vertex& camera, double inner, int most, float worth, Sampler& sampler,
             std::vector<StoreChoice>& out);
 
-/// What all places of a store would bring to one camera vertex.
+struct Visibility;
+/// What all places of a store, which were put in order, would bring to one camera vertex.
 struct Expectation {
   std::vector<std::array<float, LightStore::width>> values;  ///< per block
-  std::vector<float> sums;                                   ///< of blocks, up to and with each
+  float sum = 0;
 };
-/// Returns what a light subpath is expected to bring, as irradiance. most: largest s.
-float expect_all(const LightStore& store, const Vertex& camera, int most, Expectation& out);
-/// Draws `count` places, evenly spaced over the sums in the order of the places (systematic sampling): weights add up
-/// to what all of them stand for. u in [0, 1).
-void choose_some(const LightStore& store, const Expectation& expected, int count, float u,
+/// most: largest s. visibility: what is known of who is seen; null: nothing, all places count in full.
+void expect_all(const LightStore& store, const Vertex& camera, int most, const Visibility* visibility,
+                Expectation& out);
+/// Draws about `count` places, each on its own (Poisson sampling), in proportion to what is expected of it and at most
+/// once. key: random bits. Whether a place is drawn depends on its chance and on a hash of key and light vertex alone: as
+/// lights move a little, nearly all choices stay.
+void choose_some(const LightStore& store, const Expectation& expected, int count, uint32_t key,
                  std::vector<StoreChoice>& out);
 
 }  // namespace ajar
