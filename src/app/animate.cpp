@@ -33,6 +33,9 @@ struct Arguments {
   bool half = false, quiet = false, lenient = false;
 };
 
+// More than an image needs: cells of where things were are kept, and those of where they are must find room.
+constexpr const char* usual_memory = "32M";
+
 constexpr const char* coherences[] = {"on", "fields", "numbers", "off"};
 
 RenderOptions render_options(const Arguments& a, const Scene& scene) {
@@ -51,7 +54,7 @@ RenderOptions render_options(const Arguments& a, const Scene& scene) {
   if (o.integrator == "vpl" && a.guide != "both")
     throw Error(fmt::format("--guide {}: vpl guides light subpaths alone; leave it out", a.guide));
   o.learn.guided = a.guide == "camera" ? Guided::camera : a.guide == "light" ? Guided::light : Guided::both;
-  if (!a.field_memory.empty()) o.learn.memory = parse_bytes("--field-memory", a.field_memory);
+  o.learn.memory = parse_bytes("--field-memory", a.field_memory.empty() ? usual_memory : a.field_memory);
   return o;
 }
 
@@ -309,7 +312,7 @@ void add_animate(CLI::App& app) {
       ->check(CLI::Range(1, 4096));
   c->add_option("--guide", a->guide, "which subpaths the learned fields guide: both, camera or light")
       ->check(CLI::IsMember({"both", "camera", "light"}));
-  c->add_option("--field-memory", a->field_memory, "memory that learned fields may take: 512K, 8M (default), 1G");
+  c->add_option("--field-memory", a->field_memory, "memory that learned fields may take: 512K, 32M (default), 1G");
   c->add_option("--reference", a->reference, "frames to measure error and flicker against: DIR/ref_%04d.exr");
   c->add_option("--video", a->video, "film to make of the frames with ffmpeg: OUT.mp4");
   c->add_option("--fps", a->fps, "of the film (24)")->check(CLI::Range(1.0, 240.0));

@@ -207,7 +207,7 @@ void choose_some(const LightStore& store, const Expectation& expected, int count
     for (uint32_t i = 0; i < LightStore::width; ++i) most = std::max(most, values[i] * per_value - numbers[i]);
     if (!(most > 0)) continue;
     for (uint32_t i = 0; i < LightStore::width; ++i) {
-      const float chance = values[i] * per_value;
+      const float chance = values[i] * per_value;  // (I4)
       if (!(numbers[i] < chance)) continue;
       const LightStore::Place& place = store.places[block * LightStore::width + i];
       out.push_back({&place, place.counts / (std::min(chance, 1.0f) * float(store.paths))});

@@ -41,6 +41,7 @@ std::optional<Fields> teach(const Scene& scene, const Accel& accel, const Render
     const LearnOptions learning = learn_options(teaching);
     StoredFields carried{doubt(before->fields, moved, sequence.doubt, learning), {}, 0};
     fit_lights(scene.light_tree, learning, carried.fields);
+    for (Cell& c : carried.fields.cells) c.seen *= sequence.forget;  // or cells divide until the memory is full
     go_on_from(std::move(carried), learning, state.learning, state.film);
     teaching.learn.forget = sequence.forget;
     if (!give_lessons(scene, accel, teaching, 1, sequence.teach, state, monitor)) return {};

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -188,7 +189,7 @@ TEST(Visibility, TellsSeenFromHidden) {
   const auto chance = [&](uint32_t i) { return v.blocks[i / LightStore::width].chance[i % LightStore::width]; };
   EXPECT_GT(chance(3), 0.9f);
   EXPECT_LT(chance(4), 0.1f);
-  EXPECT_GT(chance(4), 0.02f) << "never nothing";
+  EXPECT_GT(chance(4), 0.03f) << "never nothing";
   EXPECT_GT(chance(5), 2 * chance(41)) << "beside what was seen, beside what was hidden";
 }
 
@@ -201,7 +202,7 @@ TEST(LightStore, ChoicesStay) {
   const auto choices_of = [&](uint32_t key, size_t k, float count) {
     LightStore some = store;
     some.places[2].counts = count;
-    std::swap(some.places[0], some.places[some.places.size() / 2]);  // another order
+    if (count > 1) std::reverse(some.places.begin(), some.places.end());
     finish(some, std::vector<float>(some.places.size(), 0.1f));
     Expectation sums;
     expect_all(some, end_of(cameras[k]), most_edges, nullptr, sums);
