@@ -88,6 +88,9 @@ FieldCell learn_portal(Work& w, const FieldCell& old, bool moved, Trees& out) {
   return next;
 }
 
+// Below, a field guides hardly better than the surface does by itself, and takes its time: it is left out.
+constexpr float least_contrast = 2;
+
 FieldCell learn_cell(Work& w, uint32_t cell, double area, double paths, Trees& out) {
   const FieldCell& old = w.field->cells[cell];
   const Tallies& t = *w.tallies;
@@ -109,9 +112,12 @@ FieldCell learn_cell(Work& w, uint32_t cell, double area, double paths, Trees& o
   }
   next.total = next.direct + (w.rule == Rule::max ? pi * most_radiance(w.tree) : bare);
   next.mix = bare > 0 ? mix_for(*w.options, known) : 0;
+  const bool is_read_often = w.structure == Structure::adaptive && w.field != &w.fields->disk;
+  const bool even = is_read_often && contrast(w.tree) < least_contrast;
   const float seen = float(double(t.visits[cell]) / (area * paths));
   if (w.structure == Structure::adaptive) next.near = nearness(*w.fields, w, cell);
   learn_opening(w, cell, next);
+  if (even && next.portal == none) next.mix = 0;  // (G14)
   next.visits = old.visits > 0 ? 0.5f * (old.visits + seen) : seen;
   return next;
 }
