@@ -61,7 +61,7 @@ void learn_opening(const Work& w, uint32_t cell, FieldCell& next) {
     if (share > most) most = share, best = k;
   }
   next.through = next.portal == best ? 0.5f * (next.through + float(most)) : float(most);
-  next.portal = next.through > 0.01f ? best : none;
+  next.portal = next.through > 0.01f ? uint16_t(best) : FieldCell::no_portal;
 }
 
 // Portals stay where they are from this lesson on.
@@ -112,12 +112,11 @@ FieldCell learn_cell(Work& w, uint32_t cell, double area, double paths, Trees& o
   }
   next.total = next.direct + (w.rule == Rule::max ? pi * most_radiance(w.tree) : bare);
   next.mix = bare > 0 ? mix_for(*w.options, known) : 0;
-  const bool is_read_often = w.structure == Structure::adaptive && w.field != &w.fields->disk;
-  const bool even = is_read_often && contrast(w.tree) < least_contrast;
   const float seen = float(double(t.visits[cell]) / (area * paths));
   if (w.structure == Structure::adaptive) next.near = nearness(*w.fields, w, cell);
   learn_opening(w, cell, next);
-  if (even && next.portal == none) next.mix = 0;  // (G14)
+  const bool even = w.structure == Structure::adaptive && contrast(w.tree) < least_contrast;
+  next.even = even && next.portal == FieldCell::no_portal;
   next.visits = old.visits > 0 ? 0.5f * (old.visits + seen) : seen;
   return next;
 }

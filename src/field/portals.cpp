@@ -115,12 +115,12 @@ bool cross(const Portal& portal, uint32_t number, const Vec3& p, const Vec3& w, 
 
 Opening opening(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p) {
   const FieldCell& c = field.cells[cell];
-  if (c.portal == none) return {};
+  if (c.portal == FieldCell::no_portal) return {};
   const Portal& portal = fields.table.portals[c.portal];
   const float across = portal.center[portal.axis] - p[portal.axis];
   // In the plane directions do not tell places.
   if (!(std::abs(across) > 1e-3f * portal.radius)) return {};
-  const uint32_t seen = 2 * c.portal + (across > 0);
+  const uint32_t seen = 2 * uint32_t(c.portal) + (across > 0);
   return {c.portal, seen, c.through * field.portals[seen].mix};
 }
 

@@ -12,7 +12,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind fields_kind = {"AJARfd08", "file of fields", "make one with --save-fields",
+constexpr FileKind fields_kind = {"AJARfd09", "file of fields", "make one with --save-fields",
                                   "learn the fields again with --save-fields"};
 
 bool is_amount(float x) { return x >= 0 && x < infinity; }
@@ -26,7 +26,7 @@ void frame_members(Io& io, Part& f) {
 template <class Io, class Part>
 void cell_members(Io& io, Part& c) {
   io.value(c.root), io.value(c.direct), io.value(c.total), io.value(c.mix), io.value(c.visits), io.value(c.near);
-  io.value(c.portal), io.value(c.through);
+  io.value(c.portal), io.value(c.through), io.value(c.even);
 }
 template <class Io, class Part>
 void tallies_members(Io& io, Part& t) {
@@ -89,7 +89,8 @@ bool claim(const std::vector<StrataNode>& nodes, uint32_t root, std::vector<bool
 
 bool is_sound(const FieldCell& c, size_t portals) {
   return is_amount(c.direct) && is_amount(c.total) && c.mix >= 0 && c.mix < 1 && is_amount(c.visits) &&
-         is_amount(c.near) && (c.portal == none || c.portal < portals) && c.through >= 0 && c.through <= 1;
+         is_amount(c.near) && (c.portal == FieldCell::no_portal || c.portal < portals) && c.through >= 0 &&
+         c.through <= 1 && c.even <= 1;
 }
 
 // portals: of the table.

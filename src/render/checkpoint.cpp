@@ -7,7 +7,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind checkpoint_kind = {"AJARck08", "checkpoint", "render once with --checkpoint",
+constexpr FileKind checkpoint_kind = {"AJARck09", "checkpoint", "render once with --checkpoint",
                                       "start again without --resume"};
 
 // One list of fields for both ways.

@@ -8,7 +8,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind carried_kind = {"AJARan03", "carried field file", "an animation leaves one beside its frames",
+constexpr FileKind carried_kind = {"AJARan04", "carried field file", "an animation leaves one beside its frames",
                                    "remove it: the fields are learned again from the first frame on"};
 
 // So many lessons of so many passes each, and no pass more.

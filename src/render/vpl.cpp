@@ -104,7 +104,8 @@ void join_next_event(Work& work) {
   charge_join(work.scratch, 1, camera.n);
 }
 
-// Whether the lens sees the last vertex, itself or by way of delta events: such vertices of one tile are near each other.
+// Whether the lens sees the last vertex, itself or by way of delta events: such vertices of one tile are near each
+// other.
 bool is_seen_from_lens(const Subpath& camera) {
   for (int i = 1; i + 1 < camera.n; ++i)
     if (!camera[i].delta) return false;

@@ -253,6 +253,7 @@ TEST_F(Store, WhatCannotBeIsAnError) {
       {"a portal of no size", [](Fields& f, uint32_t, uint32_t) { f.table.portals[0].radius = 0; }},
       {"a portal without strata", [](Fields& f, uint32_t, uint32_t) { f.w.portals.pop_back(); }},
       {"a portal that is not there", [](Fields& f, uint32_t i, uint32_t) { f.q.cells[i].portal = 1; }},
+      {"evenness that is none", [](Fields& f, uint32_t i, uint32_t) { f.q.cells[i].even = 2; }},
       {"more than all drawn through it", [](Fields& f, uint32_t i, uint32_t) { f.q.cells[i].through = 1.5f; }},
       {"its strata at no place", [](Fields& f, uint32_t, uint32_t) { f.q.portals[0].root = none; }},
       {"lines of no portal", [](Fields& f, uint32_t, uint32_t) { f.lines.push_back(0); }},

@@ -151,7 +151,9 @@ TEST_P(LearnedFields, GuideSamplesItsDensity) {
   const auto places = vertices_of(t, 400);
   ASSERT_GT(places.size(), 100u);
   kit::ChiOptions options = chi_options;
-  if (GetParam().structure != Structure::adaptive) options.quadrature = 32;  // densities that jump between patches
+  // Densities that jump: between patches, and where the horizon cuts through a bent hemisphere.
+  const bool jumps = GetParam().structure != Structure::adaptive || GetParam().name == std::string("bump_plane");
+  if (jumps) options.quadrature = 32;
   for (size_t k = 0; k < 6; ++k) {
     const Spot& at = places[k * places.size() / 6];
     const Mode mode = at.side == Side::camera ? Mode::radiance : Mode::importance;

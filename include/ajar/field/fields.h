@@ -22,8 +22,10 @@ struct FieldCell {
   float mix = 0;     ///< g of (G4) for a diffuse surface: how much the strata are trusted
   float visits = 0;  ///< vertices of subpaths of the side that it guides, per area of the cell and path
   float near = 0;    ///< 1 / R of (G7): reciprocal of how far away the things are that its strata hold [1/m]
-  uint32_t portal = none;  ///< through which the most arrives of what comes through one (CellTable::portals)
-  float through = 0;       ///< share of the directions to be drawn through it, as far as it is trusted
+  static constexpr uint16_t no_portal = 0xffff;
+  uint16_t portal = no_portal;  ///< through which the most arrives of what comes through one (CellTable::portals)
+  uint16_t even = 0;            ///< 1: surfaces are not guided by the strata, which are as good as even (G14)
+  float through = 0;            ///< share of the directions to be drawn through it, as far as it is trusted
 };
 
 /// One learned field: strata of all cells. Hot: what sampling reads. mean and weight stand beside the nodes.

@@ -77,8 +77,8 @@ struct Expectation {
 void expect_all(const LightStore& store, const Vertex& camera, int most, const Visibility* visibility,
                 Expectation& out);
 /// Draws about `count` places, each on its own (Poisson sampling), in proportion to what is expected of it and at most
-/// once. key: random bits. Whether a place is drawn depends on its chance and on a hash of key and light vertex alone: as
-/// lights move a little, nearly all choices stay.
+/// once. key: random bits. Whether a place is drawn depends on its chance and on a hash of key and light vertex alone:
+/// as lights move a little, nearly all choices stay.
 void choose_some(const LightStore& store, const Expectation& expected, int count, uint32_t key,
                  std::vector<StoreChoice>& out);
 

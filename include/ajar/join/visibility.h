@@ -9,7 +9,8 @@
 
 namespace ajar {
 
-/// Learned from what was seen of the place itself, of those beside it in the order of the store (its block), and of all.
+/// Learned from what was seen of the place itself, of those beside it in the order of the store (its block), and of
+/// all.
 struct Visibility {
   struct Block {
     std::array<float, LightStore::width> chance{}, tried{}, seen{};
