@@ -183,13 +183,13 @@ void expect_all(const LightStore& store, const Vertex& camera, int most, const V
 }
 
 namespace {
-// A number in [0, 1) of each light vertex of a block.
+// A number in (0, 1) of each light vertex of a block: none that is drawn with every chance, however small.
 void draw_numbers(const LightStore::Block& b, uint32_t key, Values& out) {
   for (uint32_t i = 0; i < LightStore::width; ++i) {
     uint32_t h = (b.path[i] * 64 + uint32_t(b.s[i])) * 0x9e3779b9u ^ key;
     h = (h ^ h >> 16) * 0x85ebca6bu;
     h = (h ^ h >> 13) * 0xc2b2ae35u;
-    out[i] = float((h ^ h >> 16) >> 8) * 0x1p-24f;
+    out[i] = (float((h ^ h >> 16) >> 9) + 0.5f) * 0x1p-23f;
   }
 }
 }  // namespace
@@ -198,19 +198,19 @@ void choose_some(const LightStore& store, const Expectation& expected, int count
                  std::vector<StoreChoice>& out) {
   out.clear();
   if (!(expected.sum > 0) || !(expected.sum < infinity)) return;
-  const float per_value = float(count) / expected.sum;
   for (size_t block = 0; block < expected.values.size(); ++block) {
-    const Values& values = expected.values[block];
-    Values numbers;
+    Values chances, numbers;
     draw_numbers(store.blocks[block], key, numbers);
     float most = -1;
-    for (uint32_t i = 0; i < LightStore::width; ++i) most = std::max(most, values[i] * per_value - numbers[i]);
+    for (uint32_t i = 0; i < LightStore::width; ++i) {
+      chances[i] = float(count) * (expected.values[block][i] / expected.sum);  // (I4)
+      most = std::max(most, chances[i] - numbers[i]);
+    }
     if (!(most > 0)) continue;
     for (uint32_t i = 0; i < LightStore::width; ++i) {
-      const float chance = values[i] * per_value;  // (I4)
-      if (!(numbers[i] < chance)) continue;
+      if (!(numbers[i] < chances[i])) continue;
       const LightStore::Place& place = store.places[block * LightStore::width + i];
-      out.push_back({&place, place.counts / (std::min(chance, 1.0f) * float(store.paths))});
+      out.push_back({&place, place.counts / (std::min(chances[i], 1.0f) * float(store.paths))});
     }
   }
 }
