@@ -98,6 +98,7 @@ FieldCell learn_cell(Work& w, uint32_t cell, double area, double paths, Trees& o
   w.tree.clear();
   take(*w.field, t, w.options->forget, old.root, w.tree);
   const float bare = weigh(w.tree, w.structure, 0);
+  const bool even = w.structure == Structure::adaptive && contrast(w.tree) < least_contrast;
   const float known = evidence(w.tree);
   const float floor = 0.03f * bare / pi;
   const float total = weigh(w.tree, w.structure, floor);
@@ -115,7 +116,6 @@ FieldCell learn_cell(Work& w, uint32_t cell, double area, double paths, Trees& o
   const float seen = float(double(t.visits[cell]) / (area * paths));
   if (w.structure == Structure::adaptive) next.near = nearness(*w.fields, w, cell);
   learn_opening(w, cell, next);
-  const bool even = w.structure == Structure::adaptive && contrast(w.tree) < least_contrast;
   next.even = even && next.portal == FieldCell::no_portal;
   next.visits = old.visits > 0 ? 0.5f * (old.visits + seen) : seen;
   return next;

@@ -50,21 +50,6 @@ float stratum_area(const Vec2& corner, float width) {
   return sum * width * width;  // x 4 for the square's area, / 4 samples
 }
 
-// Adds up the strata's means, and the squares of these, over the projected hemisphere.
-void add_moments(const Tree& tree, int32_t at, const Vec2& corner, float width, double& sum, double& squares) {
-  const TreeNode& node = tree[size_t(at)];
-  for (int i = 0; i < 16; ++i) {
-    const float w = width / 4;
-    const Vec2 c = corner + w * Vec2(i & 3, i >> 2);
-    if (node.child[i] >= 0) {
-      add_moments(tree, node.child[i], c, w, sum, squares);
-      continue;
-    }
-    const double mass = double(stratum_area(c, w)) * node.mean[i];
-    sum += mass, squares += mass * node.mean[i];
-  }
-}
-
 // Fills the masses of a node and all below it; returns their sum.
 float weigh_strata(Tree& tree, int32_t at, const Vec2& corner, float width, float floor) {
   float sum = 0;
@@ -219,7 +204,9 @@ float evidence(const Tree& tree) {
 
 float contrast(const Tree& tree) {
   double sum = 0, squares = 0;
-  add_moments(tree, 0, Vec2(0), 1, sum, squares);
+  for (const TreeNode& n : tree)
+    for (int i = 0; i < 16; ++i)
+      if (n.child[i] < 0) sum += double(n.mass[i]), squares += double(n.mass[i]) * double(n.mean[i]);
   return sum > 0 ? float(std::numbers::pi * squares / (sum * sum)) : 1;
 }
 

@@ -21,7 +21,7 @@ float weigh(Tree& tree, Structure structure, float floor);
 float most_radiance(const Tree& tree);
 float evidence(const Tree& tree);
 // What a field is worth as a guide: its mean square over the square of its mean, over the projected hemisphere; 1 where
-// it is even.
+// it is even. Of masses without a floor, as weigh left them.
 float contrast(const Tree& tree);
 // Divides heavy strata, if any are to be divided, and joins light ones. total: what weigh returned.
 void reshape(Tree& tree, float total, const LearnOptions& options, bool divides);

@@ -173,7 +173,6 @@ void expect_all(const LightStore& store, const Vertex& camera, int most, const V
   for (size_t block = 0; block < store.blocks.size(); ++block) {
     Values& values = out.values[block];
     expect(store.blocks[block], camera, 0, most, values);
-    apply_chances(store.blocks[block], camera, values);
     if (visibility)
       for (uint32_t i = 0; i < LightStore::width; ++i) values[i] *= visibility->blocks[block].chance[i];
     std::array<float, 8> part{};
