@@ -62,8 +62,8 @@ glm::dvec3 mean_around(const Film& film, const std::vector<glm::dvec3>& mean, in
 
 // Mean over the channels of the squared error over that of the true value. A sample that makes a pixel wrong makes it
 // bright too, and must not hide its error by that: so far as the passes disagree about the pixel, the neighbours have a
-// say.
-double pixel_error(const Film& film, const std::vector<glm::dvec3>& mean, int x, int y) {
+// say. epsilon: what a square is divided by at least.
+double pixel_error(const Film& film, const std::vector<glm::dvec3>& mean, double epsilon, int x, int y) {
   const size_t i = size_t(y) * film.width + x;
   const double n = film.passes, a = (film.passes + 1) / 2, b = film.passes / 2;
   const glm::dvec3 near = mean_around(film, mean, x, y), v = variance_of_mean(film, i, mean[i]);
@@ -73,7 +73,7 @@ double pixel_error(const Film& film, const std::vector<glm::dvec3>& mean, int x,
     const double square = (half - other) * (half - other) * a * b / (n * n);  // (E1)
     const double trust = m * m > 0 ? m * m / (m * m + 20 * v[c]) : 0;         // (E2)
     const double dim = std::min(m * m, near[c] * near[c]);
-    sum += square * (trust / (m * m + 0.01) + (1 - trust) / (dim + 0.01));  // (E3)
+    sum += square * (trust / (m * m + epsilon) + (1 - trust) / (dim + epsilon));  // (E3)
   }
   return sum / 3;
 }
@@ -164,9 +164,8 @@ Picture variance(const Film& film) {
   return out;
 }
 
-ErrorEstimate estimate_error(const Film& film) {
-  if (film.passes < 2) return {};
-  const std::vector<glm::dvec3> mean = means(film);
+namespace {
+ErrorEstimate estimate(const Film& film, const std::vector<glm::dvec3>& mean, double epsilon) {
   if (std::all_of(mean.begin(), mean.end(), [](const glm::dvec3& m) { return m == glm::dvec3(0); })) return {};
   struct Pixel {
     double error, light;
@@ -175,7 +174,7 @@ ErrorEstimate estimate_error(const Film& film) {
   parallel_for(film.height, [&](int y) {
     for (int x = 0; x < film.width; ++x) {
       const size_t i = size_t(y) * film.width + x;
-      pixels[i] = {pixel_error(film, mean, x, y), luminance(Rgb(mean[i]))};
+      pixels[i] = {pixel_error(film, mean, epsilon, x, y), luminance(Rgb(mean[i]))};
     }
   });
   const auto add = [](const Pixel& a, const Pixel& b) { return Pixel{a.error + b.error, a.light + b.light}; };
@@ -191,6 +190,20 @@ ErrorEstimate estimate_error(const Film& film) {
   out.relmse_trimmed = more * most.error / double(kept - pixels.begin());
   out.trimmed_light = all.light > 0 ? std::clamp(1 - most.light / all.light, 0.0, 1.0) : 1;
   return out;
+}
+}  // namespace
+
+ErrorEstimate estimate_error(const Film& film) {
+  return film.passes < 2 ? ErrorEstimate{} : estimate(film, means(film), 0.01);
+}
+
+double estimate_sample_error(const Film& film) {
+  if (film.passes < 2) return infinity;
+  const std::vector<glm::dvec3> mean = means(film);
+  double light = 0;
+  for (const glm::dvec3& m : mean) light += luminance(Rgb(m));
+  const double exposed = light / double(film.pixels()) / 0.2;
+  return estimate(film, mean, 0.01 * exposed * exposed).relmse_trimmed * film.passes;
 }
 
 }  // namespace ajar

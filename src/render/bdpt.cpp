@@ -29,7 +29,7 @@ void add(Work& work, Candidate& c, int s, int t) {
   const Rgb weighted = c.value * w;
   if (!accept(weighted, work.sample, work.scratch)) return;
   if (t == 1) {
-    work.scratch.splats->push_back({c.raster, weighted * work.sample.counts});
+    work.scratch.splats->push_back({c.raster, weighted * work.scratch.halves->splat_counts});
     gain_splat(work.job, work.scratch, s, work.scratch.splats->back());
   } else {
     work.sample.value += weighted;
@@ -38,7 +38,7 @@ void add(Work& work, Candidate& c, int s, int t) {
   if (!work.scratch.strategies) return;
   // What the camera sample found gets its filter here; splats are filtered on the film.
   const Vec2 raster = t == 1 ? c.raster : Vec2(work.sample.x, work.sample.y);
-  const float filter = t == 1 ? work.sample.counts : work.sample.filter;
+  const float filter = t == 1 ? work.scratch.halves->splat_counts : work.sample.filter;
   work.scratch.strategies->push_back({s, t, raster, c.value * filter, weighted * filter});
 }
 

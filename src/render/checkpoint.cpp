@@ -7,7 +7,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind checkpoint_kind = {"AJARck09", "checkpoint", "render once with --checkpoint",
+constexpr FileKind checkpoint_kind = {"AJARck10", "checkpoint", "render once with --checkpoint",
                                       "start again without --resume"};
 
 // One list of fields for both ways.
@@ -64,6 +64,7 @@ void save_checkpoint(const std::string& path, const std::string& key, const Rend
     w.value(uint64_t(state.pyramid.layers.size()));
     for (const auto& [st, layer] : state.pyramid.layers)
       w.value(st.first), w.value(st.second), w.array(layer.raw), w.array(layer.weighted);
+    w.value(state.pixels_per_light);
     write(w, state.learning);
   });
 }
@@ -79,6 +80,8 @@ void load_checkpoint(const std::string& path, const std::string& key, RenderStat
   r.require(is_sound(state.film, pixels));
   stats_fields(r, state.stats);
   read(r, state.pyramid);
+  r.value(state.pixels_per_light);
+  r.require(state.pixels_per_light == RenderState::most_light || state.pixels_per_light == RenderState::least_light);
   read(r, state.learning);
   r.finish();
 }

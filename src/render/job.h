@@ -50,6 +50,7 @@ struct Job {
   bool merges_alone = false;           ///< nothing but merges brings light, so they need no weights
   int final_gather = 0;                ///< of photon, see RenderOptions
   const Vpls* vpls = nullptr;
+  uint32_t pixels_per_light = 1;       ///< one light half for so many samples of a chunk
   bool guided = false;                 ///< fields guide subpaths, and learn from them; else lights alone are learned
   const Learning* learning = nullptr;  ///< null: nothing is learned
   Training* training = nullptr;
@@ -62,8 +63,8 @@ struct Sample {
   uint64_t path = 0;  ///< index of the pixel
   uint32_t pass = 0;
   Vec2 raster{0}, lens{0};
-  float filter = 1;  ///< what the filter makes of the camera path's radiance, times counts
-  float counts = 1;  ///< for how many samples of its pass it stands, where not all are traced
+  float filter = 1;  ///< what the filter makes of the camera path's radiance, times that for how many samples of the
+                     ///< pass it stands, where not all are traced
   Sampler sampler;
   bool teaches = false;  ///< what its subpaths see is recorded
   Rgb value{0};          ///< radiance found by the camera path, unfiltered
@@ -76,6 +77,7 @@ struct Halves {
     bool splat = false;  ///< its light subpath brought something
   };
   std::vector<Part> samples;
+  float splat_counts = 1;  ///< for how many light subpaths each one's splats stand, where fewer than pixels are traced
   LightStore store;
   Photons photons, few;
 };
@@ -92,7 +94,7 @@ struct alignas(64) Scratch {
   Subpath camera, light;
   Expectation expected;  ///< of choices
   std::vector<StoreChoice> choices;
-  Visibility visibility;  ///< of lights, from what the lens sees of a chunk, in this pass
+  Visibility visibility;         ///< of lights, from what the lens sees of a chunk, in this pass
   std::vector<NearPhoton> near;  ///< to the vertex at hand
   Halves* halves = nullptr;      ///< of the chunk
   Halves own_halves;             ///< where those of one chunk are enough
@@ -165,7 +167,8 @@ inline void gain_splat(const Job& job, Scratch& scratch, int s, const Splat& spl
   const Camera& c = job.scene->camera;
   const Vec2 at = splat.raster - Vec2(c.crop_x, c.crop_y);
   const bool inside = at.x >= 0 && at.y >= 0 && at.x < float(c.crop_width) && at.y < float(c.crop_height);
-  gain(scratch, s, 1, inside ? splat.value * float(1 / job.walk.light_paths) : Rgb(0));
+  const double pixels = double(c.crop_width) * c.crop_height;
+  gain(scratch, s, 1, inside ? splat.value * float(1 / pixels) : Rgb(0));
 }
 
 /// Law 6: only finite, non-negative values may go on; others are counted.

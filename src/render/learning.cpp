@@ -55,8 +55,8 @@ uint32_t traced_one_in(const Learning& l, const Film& film) {
   return std::min(most[l.fields.generation], uint32_t(std::max<size_t>(film.pixels() / least_pixels, 1)));
 }
 
-bool is_recorded(const Learning& learning, uint64_t pixel, uint32_t pass) {
-  return is_young(learning) || (!is_frozen(learning) && hash(pixel, pass) % rare_records == 0);
+bool is_recorded(const Learning& learning, uint64_t pixel, uint32_t pass, uint32_t one_in) {
+  return is_young(learning) || (!is_frozen(learning) && hash(pixel, pass) % one_in == 0);
 }
 
 void end_pass(const Scene& scene, Learning& l, const LearnOptions& options, Film& film) {

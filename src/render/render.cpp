@@ -71,13 +71,12 @@ Sample make_sample(const Job& job, const Film& film, int x, int y) {
   s.x = x, s.y = y;
   s.path = index_of(film, x, y);
   s.pass = film.dropped + film.passes;
-  s.teaches = job.learning && is_recorded(*job.learning, s.path, s.pass);
+  s.teaches = job.learning && is_recorded(*job.learning, s.path, s.pass, rare_records);
   s.sampler = make_sampler(job.sampler, job.seed, Side::camera, s.path, s.pass);
   const Vec2 centre(float(film.x0 + x) + 0.5f, float(film.y0 + y) + 0.5f);
   s.raster = centre + ajar::sample(film.filter, s.sampler.next2(), s.filter);
   if (job.scene->camera.kind == CameraKind::thinlens) s.lens = s.sampler.next2();
-  s.counts = float(share_of(job, film));
-  s.filter *= s.counts;
+  s.filter *= float(share_of(job, film));
   return s;
 }
 
@@ -99,8 +98,10 @@ Scratch& prepare(const Job& job, Batch& batch, uint32_t i, Scratch& scratch) {
 }
 
 // The light half of a sample; whether it brought something.
-bool trace_half(const Job& job, Sample& sample, Scratch& scratch) {
+bool trace_half(const Job& job, Sample sample, Scratch& scratch) {
   const size_t splats = scratch.splats->size();
+  sample.teaches =
+      job.learning && is_recorded(*job.learning, sample.path, sample.pass, rare_records / job.pixels_per_light);
   scratch.clock = is_timed(sample) ? clock_ticks() : 0;
   job.light_half(job, sample, scratch);
   return scratch.splats->size() > splats;
@@ -136,8 +137,11 @@ void trace_light_halves(const Job& job, Film& film, uint32_t chunk, Scratch& scr
         film.camera[index_of(film, x, y)] = Rgb(0);
   clear(halves.store);
   halves.photons.clear(), halves.few.clear();
+  const size_t count = halves.samples.size(), n = job.pixels_per_light;
+  halves.splat_counts = float(share_of(job, film));
+  if (count > 0) halves.splat_counts *= float(count) / float((count + n - 1) / n);
   if (!job.light_half) return;
-  for (auto& [sample, splat] : halves.samples) splat = trace_half(job, sample, scratch);
+  for (size_t i = 0; i < count; i += n) halves.samples[i].splat = trace_half(job, halves.samples[i].sample, scratch);
   if (job.guided) prefer(halves.store, number_of(job, film, chunk));
   finish(halves.store, job.walk.inner_share);
 }
@@ -174,14 +178,13 @@ void trace_merged(Job& job, Film& film, uint32_t from, Batch& batch, std::vector
   });
 }
 
-Job make_job(const Scene& scene, const Accel& accel, const RenderOptions& options, const Film& film) {
+Job make_job(const Scene& scene, const Accel& accel, const RenderOptions& options) {
   Job job;
   job.scene = &scene;
   job.accel = &accel;
   job.walk.max_edges = options.max_depth < 0 ? deepest : std::min(options.max_depth, deepest);
   job.walk.roulette_from = options.roulette_depth;
   job.walk.heuristic = options.heuristic;
-  job.walk.light_paths = film.splats ? double(film.pixels()) : 0;
   job.sampler = options.sampler;
   job.seed = options.seed;
   job.techniques = options.techniques;
@@ -213,14 +216,33 @@ uint32_t equal_chunks(uint32_t all) {
   return (all + batches - 1) / batches;
 }
 
-// Light subpaths of chunks from .. from + count - 1: one for each pixel.
-double pixels_of(const Film& film, uint32_t from, uint32_t count) {
+// Light subpaths of chunks from .. from + count - 1.
+double light_paths_of(const Film& film, uint32_t from, uint32_t count, uint32_t pixels_per_light) {
   double sum = 0;
   for (uint32_t chunk = from; chunk < from + count; ++chunk) {
     const int x0 = int(chunk) % tiles_x(film) * tile, y0 = int(chunk) / tiles_x(film) * tile;
-    sum += double(std::min(tile, film.width - x0)) * std::min(tile, film.height - y0);
+    const int pixels = std::min(tile, film.width - x0) * std::min(tile, film.height - y0);
+    sum += (uint32_t(pixels) + pixels_per_light - 1) / pixels_per_light;
   }
   return sum;
+}
+
+// What a sample's error is (estimate_sample_error), above which an image is noisy.
+constexpr double noisy = 0.25;
+
+uint32_t pixels_per_light(const Film& film) {
+  return estimate_sample_error(film) < noisy ? RenderState::least_light : RenderState::most_light;  // (J5)
+}
+
+// How many light subpaths are traced in the pass at hand. Where camera vertices choose among those of a whole tile, a
+// few are as good as many. While fields know little, all of them teach; a photon map has use for all.
+void set_light_paths(bool joined, RenderState& state, Job& job) {
+  const Film& film = state.film;
+  const bool looks = film.chunks == 0 && film.passes >= 8 && std::has_single_bit(film.passes);
+  if (joined && looks) state.pixels_per_light = pixels_per_light(film);
+  const bool knows = joined && state.learning.fields.generation >= blind_generations;
+  job.pixels_per_light = knows ? state.pixels_per_light : 1;
+  job.walk.light_paths = film.splats ? light_paths_of(film, 0, chunk_count(film), job.pixels_per_light) : 0;
 }
 
 // What joins of a guided vertex count for in the weights: about as many are made of each, where it matters (J3).
@@ -240,7 +262,7 @@ Merging merging_of(const Scene& scene, const RenderOptions& options, const Film&
   const uint32_t count = std::min(chunks, chunk_count(film) - film.chunks);
   const float pixels = options.merge_radius * std::pow(float(film.passes + 1), -1.0f / 6);
   Merging m;
-  m.paths = pixels_of(film, film.chunks, count);
+  m.paths = light_paths_of(film, film.chunks, count, 1);
   m.inner = merge_inner;
   const CameraRay ray = generate(camera, Vec2(camera.width, camera.height) * 0.5f, Vec2(0.5f));
   m.eye = ray.o;
@@ -341,8 +363,9 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   const Integrator& integrator = find_integrator(options.integrator);
   Film& film = state.film;
   RenderStats& stats = state.stats;
-  Job job = make_job(scene, accel, options, film);
+  Job job = make_job(scene, accel, options);
   const bool merging = integrator.merges && options.merge_radius > 0;
+  const bool joined = integrator.guided && integrator.light_half && !merging && !integrator.vpls;  // by tiles
   job.trace = integrator.trace, job.light_half = integrator.light_half;
   job.merges_alone = integrator.trace == trace_photon;
   if (job.merges_alone) job.final_gather = options.final_gather;
@@ -391,6 +414,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
     const uint32_t from = film.chunks;
     job.walk.merging = merging ? merging_of(scene, options, film, equal_chunks(all)) : Merging{};
     job.walk.merging.paths /= share_of(job, film);
+    threads.run([&] { set_light_paths(joined, state, job); });
     const uint32_t count = merging ? std::min(equal_chunks(all), all - from)
                                    : std::min({batch_chunks, all - from, affordable_chunks(options, state)});
     batch.splats.resize(count);

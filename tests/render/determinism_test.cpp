@@ -251,6 +251,27 @@ TEST(Determinism, GuidedCheckpointsAreTheStraightRun) {
   expect_same_bytes(straight, state);
 }
 
+// Quiet images need few light subpaths, whatever the unit of light; those that are young, or that teach, all of them.
+TEST(Determinism, LightSubpathsAreAsManyAsNoiseAsksFor) {
+  for (const float factor : {1.0f, 1e-6f, 1e6f}) {
+    Scene scene = stage(32);
+    scene.lights[0].radiance.value *= factor;
+    finish(scene);
+    const Accel accel(scene);
+    RenderOptions o = options_of("guided-bdpt", 8);
+    RenderState state = rendered(scene, accel, o);
+    const double pixels = double(state.film.pixels()), young = pixels * blind_generations;
+    EXPECT_EQ(state.pixels_per_light, RenderState::most_light) << factor << ", not looked at yet";
+    EXPECT_NEAR(double(state.stats.counters.light_paths), young + 8 * pixels / 2, 0.02 * young);
+    o.spp = 9;
+    render(scene, accel, o, state, {});
+    EXPECT_EQ(state.pixels_per_light, RenderState::least_light) << factor;
+    EXPECT_NEAR(double(state.stats.counters.light_paths), young + 8 * pixels / 2 + pixels / 4, 0.02 * young);
+  }
+  const Scene rooms = two_rooms(5);
+  EXPECT_EQ(rendered(rooms, Accel(rooms), options_of("guided-bdpt", 9)).pixels_per_light, RenderState::most_light);
+}
+
 TEST(Determinism, StoredFieldsSpareTheYoungPasses) {
   const Scene scene = strip(false);
   const Accel accel(scene);

@@ -68,6 +68,9 @@ struct ErrorEstimate {
 /// From the difference of the two halves, which are independent whatever the sampler; docs/notation.md, E1 to E3. A
 /// pass at work counts by the share of it that is done.
 ErrorEstimate estimate_error(const Film& film);
+/// Of one sample: relMSE without the worst 0.1 % of pixels, times passes, of the image exposed to a mean luminance of a
+/// fifth, so that it does not depend on the light's unit.
+double estimate_sample_error(const Film& film);
 inline double estimated_error(const Film& film) { return estimate_error(film).relmse; }
 
 }  // namespace ajar

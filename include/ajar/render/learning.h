@@ -37,8 +37,8 @@ bool in_training(const Learning& learning);
 /// One pixel in so many is traced in the pass at hand. What blind passes find is not for the image, and the first
 /// lessons need less than all pixels of a large one.
 uint32_t traced_one_in(const Learning& learning, const Film& film);
-/// Whether the subpaths of this pixel are recorded in this pass.
-bool is_recorded(const Learning& learning, uint64_t pixel, uint32_t pass);
+/// Whether the subpaths of this pixel are recorded in this pass: all as long as fields are young, then one in so many.
+bool is_recorded(const Learning& learning, uint64_t pixel, uint32_t pass, uint32_t one_in);
 /// Call after every finished pass. Drops the blind passes from the film when the time has come.
 void end_pass(const Scene& scene, Learning& learning, const LearnOptions& options, Film& film);
 

@@ -26,6 +26,10 @@ struct RenderState {
   Pyramid pyramid;  ///< filled when RenderOptions::techniques
   RenderStats stats;
   Learning learning;  ///< of guided integrators
+  /// One light subpath for so many, where camera subpaths join vertices of a whole tile. Looked at anew after 8, 16, 32
+  /// ... passes.
+  uint32_t pixels_per_light = most_light;
+  static constexpr uint32_t most_light = 2, least_light = 4;  ///< in noisy images, and in others
 };
 
 /// Seen between batches of chunks, a few times a second at most for large images; return false to stop. May be empty.
