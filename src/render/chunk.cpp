@@ -1,0 +1,92 @@
+// One tile of the film in one pass: its samples, their light halves, their camera halves.
+
+#include "chunk.h"
+
+namespace ajar {
+
+uint32_t share_of(const Job& job, const Film& film) {
+  return job.guided && job.learning ? traced_one_in(*job.learning, film) : 1;
+}
+
+namespace {
+
+uint64_t index_of(const Film& film, int x, int y) { return uint64_t(y) * uint64_t(film.width) + uint64_t(x); }
+
+Sample make_sample(const Job& job, const Film& film, int x, int y) {
+  Sample s;
+  s.x = x, s.y = y;
+  s.path = index_of(film, x, y);
+  s.pass = film.dropped + film.passes;
+  s.teaches = job.learning && is_recorded(*job.learning, s.path, s.pass, rare_records);
+  s.sampler = make_sampler(job.sampler, job.seed, Side::camera, s.path, s.pass);
+  const Vec2 centre(float(film.x0 + x) + 0.5f, float(film.y0 + y) + 0.5f);
+  s.raster = centre + ajar::sample(film.filter, s.sampler.next2(), s.filter);
+  if (job.scene->camera.kind == CameraKind::thinlens) s.lens = s.sampler.next2();
+  s.filter *= float(share_of(job, film));
+  return s;
+}
+
+bool is_traced(const Job& job, const Film& film, int x, int y) {
+  const uint32_t n = share_of(job, film);
+  return n == 1 || hash(hash(job.seed, film.dropped + film.passes), index_of(film, x, y)) % n == 0;
+}
+
+// Not those that are recorded more than others.
+bool is_timed(const Sample& s) { return hash(0x71c5 + s.path, s.pass) % timed_samples == 0; }
+
+// The light half of a sample; whether it brought something.
+bool trace_half(const Job& job, Sample sample, Scratch& scratch) {
+  const size_t splats = scratch.splats->size();
+  sample.teaches =
+      job.learning && is_recorded(*job.learning, sample.path, sample.pass, rare_records / job.pixels_per_light);
+  scratch.clock = is_timed(sample) ? clock_ticks() : 0;
+  job.light_half(job, sample, scratch);
+  return scratch.splats->size() > splats;
+}
+
+void trace_pixel(const Job& job, Film& film, Sample& sample, bool splat, Scratch& scratch) {
+  const size_t splats = scratch.splats->size();
+  scratch.clock = is_timed(sample) ? clock_ticks() : 0;
+  job.trace(job, sample, scratch);
+  if (!accept(sample.value, sample, scratch)) sample.value = Rgb(0);
+  ++scratch.counters.camera_paths;
+  scratch.counters.zero_paths += is_black(sample.value) && !splat && scratch.splats->size() == splats;
+  film.camera[sample.path] = sample.value * sample.filter;
+}
+
+// A number of the chunk's own in this pass, in [0, 1).
+float number_of(const Job& job, const Film& film, uint32_t chunk) {
+  return to_unit(uint32_t(hash(hash(job.seed, 0x6a32), hash(film.dropped + film.passes, chunk)) >> 32));
+}
+
+}  // namespace
+
+void trace_light_halves(const Job& job, Film& film, uint32_t chunk, Scratch& scratch) {
+  const int x0 = int(chunk) % tiles_x(film) * tile, y0 = int(chunk) / tiles_x(film) * tile;
+  const int x1 = std::min(x0 + tile, film.width), y1 = std::min(y0 + tile, film.height);
+  Halves& halves = *scratch.halves;
+  scratch.rejected_at = Scratch::no_path;
+  halves.samples.clear();
+  for (int y = y0; y < y1; ++y)
+    for (int x = x0; x < x1; ++x)
+      if (is_traced(job, film, x, y))
+        halves.samples.push_back({make_sample(job, film, x, y)});
+      else
+        film.camera[index_of(film, x, y)] = Rgb(0);
+  clear(halves.store);
+  halves.photons.clear(), halves.few.clear();
+  const size_t count = halves.samples.size(), n = job.pixels_per_light;
+  halves.splat_counts = float(share_of(job, film));
+  if (count > 0) halves.splat_counts *= float(count) / float((count + n - 1) / n);
+  if (!job.light_half) return;
+  for (size_t i = 0; i < count; i += n) halves.samples[i].splat = trace_half(job, halves.samples[i].sample, scratch);
+  if (job.guided) prefer(halves.store, number_of(job, film, chunk));
+  finish(halves.store, job.walk.inner_share);
+}
+
+void trace_camera_halves(const Job& job, Film& film, Scratch& scratch) {
+  if (job.vpls) start(job.vpls->store, scratch.visibility);
+  for (auto& [sample, splat] : scratch.halves->samples) trace_pixel(job, film, sample, splat, scratch);
+}
+
+}  // namespace ajar

@@ -1,0 +1,16 @@
+// Enters: a job, a film and the number of one of its tiles.
+// Leaves: what the samples of the tile found in the pass at hand: on the film, and in a thread's scratch.
+#pragma once
+
+#include "job.h"
+
+namespace ajar {
+
+/// One pixel in so many is traced.
+uint32_t share_of(const Job& job, const Film& film);
+/// The samples of a chunk and, where light subpaths are stored, their light halves.
+void trace_light_halves(const Job& job, Film& film, uint32_t chunk, Scratch& scratch);
+/// What the samples of the scratch's halves see.
+void trace_camera_halves(const Job& job, Film& film, Scratch& scratch);
+
+}  // namespace ajar
