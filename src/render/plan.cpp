@@ -14,7 +14,7 @@
 namespace ajar {
 namespace {
 
-// From the simplest to the fullest. What a ray costs with all that hangs on it, measured on three scenes (results.md).
+// From the simplest to the fullest. What a ray costs with all that hangs on it: benchmarks/ray_cost.sh (results.md).
 struct Candidate {
   const char* name;
   double ray;     // [us]
@@ -22,13 +22,13 @@ struct Candidate {
   bool light_subpaths, guided;
 };
 constexpr Candidate candidates[] = {{"path", 0.23, 2, false, false},
-                                    {"guided-path", 0.38, 5, false, true},
-                                    {"bdpt", 0.225, 6.5, true, false},
-                                    {"guided-bdpt", 0.46, 10, true, true}};
-constexpr uint32_t trial_passes = 12;  // that count
-constexpr double least_pixels = 600;   // below, a pilot says little
-constexpr double first_guess = 20;     // CPU seconds of a render whose end its noise alone decides
-constexpr double hysteresis = 0.9;
+                                    {"guided-path", 0.42, 5, false, true},
+                                    {"bdpt", 0.245, 6.5, true, false},
+                                    {"guided-bdpt", 0.44, 10, true, true}};
+constexpr uint32_t trial_passes = 12;    // that count
+constexpr double least_pixels = 600;     // below, a pilot says little
+constexpr double first_guess = 20;       // CPU seconds of a render whose end its noise alone decides
+constexpr double hysteresis = 0.9;       // what guides has to be this much better than what does not
 constexpr double still_to_learn = 0.75;  // of a guided integrator's time, where a sample is mostly noise: see choose
 
 // CPU seconds; infinite where a target for the noise alone ends the render.
@@ -127,10 +127,14 @@ double expected_price(const Trial& t) {
   return t.price() * (is_guided(t.integrator) && t.error > 1 ? still_to_learn : 1);
 }
 
+// Not that light subpaths be much better: what paths without them miss, as caustics, makes those look quiet, never the
+// others.
 void choose(Plan& plan) {
   const Trial* best = nullptr;
+  const auto handicap = [](const Trial& t) { return is_guided(t.integrator) ? 1 : hysteresis; };
   for (const Trial& t : plan.trials)
-    if (t.price() < infinity && (!best || expected_price(t) < hysteresis * expected_price(*best))) best = &t;
+    if (t.price() < infinity && (!best || handicap(t) * expected_price(t) < handicap(*best) * expected_price(*best)))
+      best = &t;
   if (best) plan.integrator = best->integrator;
 }
 

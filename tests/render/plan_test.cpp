@@ -101,13 +101,14 @@ TEST(Plan, EdgesOfLampsInSightAreTheSameNoiseToAll) {
   }
 }
 
-// A caustic lies on other light: what misses it sees the most of every pixel, and looks quiet.
+// A caustic lies on other light: what misses it sees the most of every pixel, and looks quiet. One pilot in twenty of this
+// size sees next to nothing of it.
 TEST(Plan, KnowsThatCausticsAreMissed) {
   Scene scene = load_scene(kit::source_path("scenes/glass/glass.xml"));
   set_size(scene.camera, 128, 128);
   int right = 0;
-  for (const uint64_t seed : {1, 2, 3, 4, 5, 6}) right += is_on(plan_for(scene, 20, seed), "light-subpaths");
-  EXPECT_EQ(right, 6);
+  for (uint64_t seed = 1; seed <= 12; ++seed) right += is_on(plan_for(scene, 20, seed), "light-subpaths");
+  EXPECT_GE(right, 10);
 }
 
 TEST(Plan, WithoutLightsOrTimeThereIsNoPilot) {
