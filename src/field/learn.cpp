@@ -13,8 +13,10 @@ namespace ajar {
 namespace {
 
 // Share of the memory up to which cells are added, and strata divided: cells are few, their strata go on growing, and a
-// lesson does not know how much it is about to add.
+// lesson does not know how much it is about to add. Coarse cells are always let in: without one, what has moved to
+// where nothing was (a door's leaf) would not be guided at all.
 constexpr double for_cells = 0.4, for_strata = 0.9;
+constexpr int coarse_levels = 3;
 bool is_left(const Fields& fields, double share, const LearnOptions& options) {
   return double(bytes(fields)) < share * double(options.memory);
 }
@@ -162,8 +164,9 @@ Field learn_field(const Fields& fields, const Field& field, Structure structure,
 void add_cells(Fields& fields, const Sightings& sightings, const LearnOptions& options) {
   std::vector<std::pair<CellKey, Sighting>> sorted(sightings.begin(), sightings.end());
   std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  const double share = fields.structure == Structure::adaptive ? for_cells : 1;
+  const bool adaptive = fields.structure == Structure::adaptive;
   for (const auto& [key, seen] : sorted) {
+    const double share = !adaptive ? 1 : level_of(key) < coarse_levels ? for_strata : for_cells;
     if (!is_left(fields, share, options)) return;
     if (seen.count < 4) continue;
     const CellKey above = parent_of(key);

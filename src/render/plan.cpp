@@ -29,7 +29,7 @@ constexpr uint32_t trial_passes = 12;    // that count
 constexpr double least_pixels = 600;     // below, a pilot says little
 constexpr double first_guess = 20;       // CPU seconds of a render whose end its noise alone decides
 constexpr double hysteresis = 0.9;       // what guides has to be this much better than what does not
-constexpr double still_to_learn = 0.75;  // of a guided integrator's time, where a sample is mostly noise: see choose
+constexpr double still_to_learn = 0.75;  // of a guided integrator's price: it goes on learning where the pilot ends
 
 // CPU seconds; infinite where a target for the noise alone ends the render.
 double budget_of(const RenderOptions& o, double pixels) {
@@ -122,10 +122,7 @@ void add_contained_parts(const Scene& scene, Plan& plan) {
   add("textures", !scene.textures.empty(), fmt::format("{}", scene.textures.size()), "none in the scene");
 }
 
-// Where light is hard to find, the render goes on learning after the pilot ends.
-double expected_price(const Trial& t) {
-  return t.price() * (is_guided(t.integrator) && t.error > 1 ? still_to_learn : 1);
-}
+double expected_price(const Trial& t) { return t.price() * (is_guided(t.integrator) ? still_to_learn : 1); }
 
 // Not that light subpaths be much better: what paths without them miss, as caustics, makes those look quiet, never the
 // others.

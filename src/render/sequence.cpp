@@ -29,13 +29,15 @@ uint64_t image_seed(const SequenceOptions& sequence, uint64_t seed, uint32_t fra
   return sequence.coherence.numbers ? seed : hash(hash(seed, 0xf4a3e), frame);
 }
 
-uint64_t teaching_seed(uint64_t seed, uint32_t frame) { return hash(hash(seed, 0x7eac4), frame); }
+uint64_t teaching_seed(const SequenceOptions& sequence, uint64_t seed, uint32_t frame) {
+  return hash(hash(seed, 0x7eac4), sequence.coherence.numbers ? 0 : frame);
+}
 
 std::optional<Fields> teach(const Scene& scene, const Accel& accel, const RenderOptions& options,
                             const SequenceOptions& sequence, const Carried* before, const std::vector<Box>& moved,
                             uint32_t frame, const Monitor& monitor) {
   RenderOptions teaching = options;
-  teaching.seed = teaching_seed(options.seed, frame);
+  teaching.seed = teaching_seed(sequence, options.seed, frame);
   RenderState state = start_render(scene, teaching);
   if (before) {
     const LearnOptions learning = learn_options(teaching);

@@ -11,6 +11,7 @@ constexpr double exposed = 0.2;     // mean luminance of the image as it would b
 constexpr double dark = 0.01;       // of relMSE
 constexpr double clip = 8;          // times what all saw about a pixel: what is brighter is a firefly
 constexpr double least_miss = 0.1;  // of a block's light
+constexpr double blind = 0.1;       // of the image's light, fireflies left aside: to see less is to see nothing
 constexpr int block = 8;            // pixels
 constexpr int around = 2;           // pixels
 
@@ -26,16 +27,25 @@ struct Block {
   double fireflies = 0, error = 0, pixels = 0;
 };
 
+// Mean without the brightest thousandth, which a firefly may be.
+double usual_mean(std::vector<double> values) {
+  const auto kept = values.end() - std::ptrdiff_t((values.size() + 999) / 1000);
+  if (kept != values.end()) std::nth_element(values.begin(), kept, values.end());
+  return std::accumulate(values.begin(), kept, 0.0) / double(kept - values.begin());
+}
+
 // How bright each pixel is, as all sights together saw it, exposed; empty: black.
 std::vector<double> seen_by_all(const std::vector<Sight>& sights, double& scale) {
   double most = 0;
   std::vector<double> all(sights[0].sum.size());
   for (const Sight& s : sights) {
     const double n = double(s.passes.size());
-    most = std::max(most, std::accumulate(s.sum.begin(), s.sum.end(), 0.0) / (n * double(all.size())));
+    most = std::max(most, usual_mean(s.sum) / n);
     for (size_t i = 0; i < all.size(); ++i) all[i] += s.sum[i] / (n * double(sights.size()));
   }
-  if (!(most > 0)) return {};
+  const double mean = std::accumulate(all.begin(), all.end(), 0.0) / double(all.size());
+  if (!(mean > 0)) return {};
+  if (!(most > 0)) most = mean;
   scale = exposed / most;
   for (double& x : all) x *= scale;
   return all;
@@ -144,8 +154,9 @@ std::vector<Judgement> judge(const std::vector<Sight>& sights) {
   std::vector<Blocks> blocks;
   for (const Sight& s : sights) blocks.push_back(blocks_of(s, sights.size(), all, level, scale));
   for (size_t k = 0; k < sights.size(); ++k) {
-    out[k] = blocks[k].judgement;
     const double passes = double(sights[k].passes.size());
+    if (usual_mean(sights[k].sum) / passes * scale < blind * exposed) continue;
+    out[k] = blocks[k].judgement;
     double sum = 0;
     for (size_t i = 0; i < blocks[k].all.size(); ++i) {
       double most = 0;

@@ -274,6 +274,27 @@ TEST(Learn, VisitedCellsDivideUnderTheMemoryLimit) {
   EXPECT_FLOAT_EQ(c.q.weight[16 * root + 5], 0.5f) << "and a quarter of the trust";
 }
 
+// What has moved to where nothing was must be guided, however full the memory is of what was there before.
+TEST(Learn, CoarseCellsFindRoomWhereFineOnesDoNot) {
+  Fields f = one_cell();
+  CellKey part = 0;
+  for (int level = 1; level <= 3; ++level) {
+    if (part) f = learn(f, start_training(f), seen(part, up, 4), 1, {});
+    Training visits = start_training(f);
+    for (int i = 0; i < 601; ++i) record_visit(visits.q, find(f.table, somewhere, up).cell);
+    f = learn(f, visits, {}, 1, {});
+    part = find(f.table, somewhere, up).missing;
+    ASSERT_NE(part, 0u);
+    ASSERT_EQ(level_of(part), level);
+  }
+  LearnOptions half;
+  half.memory = 2 * (bytes(f) - bytes(f.views));
+  const CellKey other = find(f.table, somewhere, -up).missing;
+  ASSERT_EQ(level_of(other), 0);
+  EXPECT_EQ(learn(f, start_training(f), seen(part, up, 4), 1, half).cells.size(), f.cells.size());
+  EXPECT_EQ(learn(f, start_training(f), seen(other, -up, 4), 1, half).cells.size(), f.cells.size() + 1);
+}
+
 TEST(Learn, PartsInheritDividedStrata) {
   const Fields blank = one_cell();
   Lesson first(blank);

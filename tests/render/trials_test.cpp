@@ -90,6 +90,8 @@ TEST(Trials, BlackIsNotQuiet) {
   const auto both = judge({black, flicker(0.5f, 2)});
   EXPECT_EQ(both[0].error, infinity);
   EXPECT_LT(both[1].error, infinity);
+  add(black, 3, 100, 1e3f);
+  EXPECT_EQ(judge({black, flicker(0.5f, 2)})[0].error, infinity) << "nor with one firefly";
 }
 
 }  // namespace

@@ -29,9 +29,10 @@ struct Carried {
 };
 
 /// The seed of a frame's image, and that of the passes that teach it: independent of each other, so that fields never
-/// know the numbers of an image that they guide.
+/// know the numbers of an image that they guide. Both are every frame's where numbers are, so that fields change as the
+/// scene does and not as numbers do.
 uint64_t image_seed(const SequenceOptions& sequence, uint64_t seed, uint32_t frame);
-uint64_t teaching_seed(uint64_t seed, uint32_t frame);
+uint64_t teaching_seed(const SequenceOptions& sequence, uint64_t seed, uint32_t frame);
 
 /// The fields of a frame: those of the frame before (nothing: from nothing), doubted where the scene moved, and then
 /// taught. Deterministic whatever the number of threads. options: of the image; budgets are not read. Nothing where the

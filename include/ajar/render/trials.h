@@ -21,8 +21,8 @@ void look(const Film& film, Sight& sight);
 
 /// Of one sample; relMSE as ajar compare has it, of the image exposed to a mean of a fifth.
 struct Judgement {
-  double error = infinity;  ///< without the worst 0.1 % of pixels; infinite where nothing but black was seen,
-                            ///< or there is nothing to compare with
+  double error = infinity;  ///< without the worst 0.1 % of pixels; infinite where less than a tenth of the light
+                            ///< was seen, or there is nothing to compare with
   double deviation = 0;     ///< standard deviation of that
   double unseen = 0;        ///< beyond that, of what the samples missed and others saw; at least
 };
