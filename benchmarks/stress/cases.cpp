@@ -314,6 +314,7 @@ void add_lights(List& l) {
     Case& c = l.add(wide ? "4096 x 1" : "1 x 4096", [wide] { return wide ? film(4096, 1) : film(1, 4096); });
     c.passes = 2;
     c.light = !wide;  // hardly a path from the lamp crosses so thin an image
+    c.tails = wide;   // nor is there more than a photon or two in a block of it
   }
 }
 
@@ -347,8 +348,10 @@ void add_materials(List& l) {
     c.light = h > 1e-3;                  // what lies so close to the lens, no path from a lamp will meet
     if (!c.light) c.blind = {"photon"};  // radii are as large as pixels look: here they vanish
   }
-  for (const double b : {0.08, 1.0})
-    l.add("bumps of " + shown(b) + " from 0.01 above", [b] { return grazing(1e-2f, float(b)); });
+  for (const double b : {0.08, 1.0}) {
+    Case& c = l.add("bumps of " + shown(b) + " from 0.01 above", [b] { return grazing(1e-2f, float(b)); });
+    c.tails = b > 0.5;  // steep bumps reach the lens: a light subpath that comes so near it is rare, and bright
+  }
 }
 
 }  // namespace

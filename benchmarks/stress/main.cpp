@@ -108,6 +108,17 @@ void save_picture(const Arguments& a, const Case& c, const std::string& integrat
   write_exr(a.pictures + "/" + name, p, {}, false);
 }
 
+// By a process of their own: OpenEXR begins threads, and a process that has any cannot be forked any more.
+void save_pictures(const Arguments& a, const Case& c, const std::string& integrator, const Outcome& o,
+                   const Outcome& right) {
+  const pid_t child = fork();
+  if (child == 0) {
+    save_picture(a, c, integrator, o), save_picture(a, c, "right", right);
+    _exit(0);
+  }
+  if (child > 0) waitpid(child, nullptr, 0);
+}
+
 struct Table {
   std::string text;
   int wrong = 0;
@@ -157,7 +168,7 @@ void add_row(const Arguments& a, Table& table, const Case& c) {
     megabytes = std::max(megabytes, t.megabytes), rejected += t.outcome.rejected;
     fmt::print(stderr, "{}, {}, {}: {:.1f} s, p {:.2g} {}{}{}\n", c.group, c.name, integrator, t.outcome.cpu_seconds,
                v.p, v.message, c.refused ? t.outcome.refusal : "", t.death);
-    if (!v.ok) save_picture(a, c, integrator, t.outcome), save_picture(a, c, "right", right.outcome);
+    if (!v.ok) save_pictures(a, c, integrator, t.outcome, right.outcome);
   }
   table.text += fmt::format(" {:.0f} | {} |\n", megabytes, rejected);
 }

@@ -77,6 +77,11 @@ std::vector<Part> trace_parts(const Job& job, uint64_t stream, uint32_t pass, st
     const uint32_t from = uint32_t(part) * grain, to = std::min(paths, from + grain);
     for (uint32_t i = from; i < to; ++i)
       trace_lights(job, numbers_of(job, stream, pass, i), scratches[thread_slot()], parts[part]);
+    const LightStore& store = parts[part].store;
+    std::erase_if(parts[part].store.places, [&](const LightStore::Place& at) {
+      const std::span<const Vertex> subpath = store.subpath(at);
+      return !can_light(subpath.back().guide) && !only_joined(subpath);
+    });
   });
   return parts;
 }
@@ -157,6 +162,18 @@ Vpls make_vpls(const Scene& scene, const Film& film, bool guided) {
   v.most = kept_lights;
   v.joins = 12;
   return v;
+}
+
+bool can_light(const Guide& y) {
+  constexpr float least_alpha = 0.11f;
+  return least_roughness(y.bsdf) >= least_alpha;
+}
+
+bool only_joined(std::span<const Vertex> light) {
+  const size_t end = light.size() - 1;
+  const LightPoint& point = light[0].point;
+  return end > 1 && (point.delta_position || point.delta_direction) &&
+         std::all_of(light.begin() + 1, light.begin() + ptrdiff_t(end), [](const Vertex& v) { return v.delta; });
 }
 
 double density_of_lights(const Job& job, const Vec3& p, const Vec3& ng, const Vec3& w) {

@@ -86,6 +86,16 @@ TEST(Vpl, KeepsEnergyInAFurnace) {
   }
 }
 
+// What so narrow a lobe scatters no join will ever find: it is left to walks.
+TEST(Vpl, NarrowLobesKeepTheirEnergy) {
+  const Scene scene = with_material(MaterialKind::roughdielectric, 0.001f, 12);
+  const double right = mean(measure(scene, statistical("path"), {.batches = 4, .passes = 512, .seed = 3}));
+  for (const char* integrator : {"vpl", "plain-vpl"}) {
+    const double found = mean(measure(scene, statistical(integrator), {.batches = 4, .passes = 64, .seed = 3}));
+    EXPECT_NEAR(found / right, 1, 0.015) << integrator;
+  }
+}
+
 TEST(Sequence, ImagesNeverDrawTheNumbersThatTaught) {
   SequenceOptions s;
   for (const bool numbers : {true, false}) {

@@ -76,5 +76,7 @@ bool sample(const Bsdf& bsdf, const Vec3& wo, float u_lobe, const Vec2& u, Mode 
 /// Directional-hemispherical reflectance estimate for AOVs and roulette; in [0, 1] per channel for physical inputs. The
 /// passage of a mask counts too.
 Rgb albedo(const Bsdf& bsdf, const Vec3& wo);
+/// Roughness (alpha) of its narrowest lobe that is no delta; 1 where there is none, and of diffuse ones.
+float least_roughness(const Bsdf& bsdf);
 
 }  // namespace ajar

@@ -1,5 +1,7 @@
 #include "ajar/scene/bsdf.h"
 
+#include <span>
+
 #include "visit.h"
 
 namespace ajar {
@@ -31,6 +33,29 @@ BsdfEval eval_lobe(const Bsdf& bsdf, int i, const Vec3& wo, const Vec3& wi, Mode
   BsdfEval e = value(o, in);
   e.f *= mode == Mode::radiance ? cosines(in, wi) : cosines(o, wo);  // (A2)
   return e;
+}
+
+float narrower(const Facets& f) { return std::min(f.alpha_u, f.alpha_v); }
+
+// Roughness of the narrower of what a lobe consists of.
+float roughness(const Lobe& lobe) {
+  switch (lobe.kind) {
+    case LobeKind::roughconductor:
+      return narrower(lobe.roughconductor.facets);
+    case LobeKind::roughdielectric:
+      return narrower(lobe.roughdielectric.facets);
+    case LobeKind::roughplastic:
+      return lobe.roughplastic.alpha;
+    case LobeKind::phong:
+      return lobe.phong.share > 0 ? std::sqrt(2 / (lobe.phong.exponent + 2)) : 1;
+    case LobeKind::ward:
+      return lobe.ward.share > 0 ? narrower(lobe.ward.facets) : 1;
+    case LobeKind::principled:
+      return std::min(sqr(lobe.principled.roughness),
+                      lobe.principled.clearcoat > 0 ? lobe.principled.clearcoat_alpha : 1);
+    default:
+      return 1;
+  }
 }
 
 // The weight of a smooth sample is left to the sum.
@@ -107,6 +132,12 @@ Rgb albedo(const Bsdf& bsdf, const Vec3& wo) {
     sum += bsdf.weights[i] * visit(bsdf.lobes[i], [&](const auto& lobe) { return albedo(lobe, o); });
   }
   return sum;
+}
+
+float least_roughness(const Bsdf& bsdf) {
+  float least = 1;
+  for (const Lobe& lobe : std::span(bsdf.lobes, size_t(bsdf.count))) least = std::min(least, roughness(lobe));
+  return least;
 }
 
 }  // namespace ajar
