@@ -27,9 +27,9 @@ struct Block {
   double fireflies = 0, error = 0, pixels = 0;
 };
 
-// Mean without the brightest thousandth, which a firefly may be.
+// Mean without the brightest thousandth, one at least, which a firefly may be; of a single pixel it is the pixel.
 double usual_mean(std::vector<double> values) {
-  const auto kept = values.end() - std::ptrdiff_t((values.size() + 999) / 1000);
+  const auto kept = values.end() - std::ptrdiff_t((values.size() + 998) / 1000);
   if (kept != values.end()) std::nth_element(values.begin(), kept, values.end());
   return std::accumulate(values.begin(), kept, 0.0) / double(kept - values.begin());
 }
