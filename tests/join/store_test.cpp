@@ -1,112 +1,13 @@
 // One of all light vertices, drawn: with its weight it stands for all of them, whatever it is asked for.
-#include "ajar/join/store.h"
-
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 
-#include "ajar/join/visibility.h"
-#include "kit/stage.h"
-#include "path/train.h"
+#include "room.h"
 
-namespace ajar {
+namespace ajar::room {
 namespace {
-
-constexpr int most_edges = 6;
-
-Scene scaled_stage(float scale) {
-  Scene scene = kit::stage(8);
-  Material glossy;
-  glossy.kind = MaterialKind::roughplastic;
-  add_mesh(scene, kit::globe({0.3f, -0.5f, 0.1f}, 0.4f, 8), add_material(scene, glossy));
-  for (Mesh& mesh : scene.meshes)
-    for (Vec3& p : mesh.positions) p *= scale;
-  // Next-event estimation finds a ball's points by another density than emission does.
-  add_area_light(scene, add_sphere(scene, Vec3(-0.5f, 0.2f, 0.1f) * scale, 0.2f * scale, add_diffuse(scene, Rgb(0.5f))),
-                 Rgb(30));
-  set_camera(scene, Vec3(0, 0, 4.2f) * scale, Vec3(0), 36, 8, 8);
-  finish(scene);
-  return scene;
-}
-
-// Each region sees some of the others always, some rarely, some never.
-Views made_up_views(const Fields& fields) {
-  Views views = fields.views;
-  ViewTallies tallies = start_tallies(views);
-  for (uint32_t a = 0; a < views.regions; ++a)
-    for (uint32_t b = a; b < views.regions; ++b)
-      for (uint32_t i = 0; i < 60; ++i) record_join(views, tallies, a, b, hash(a * 7919 + b, i) % 3 < hash(a, b) % 4);
-  return learn_views(views, tallies, fields.regions, 1);
-}
-
-struct Room {
-  Scene scene;
-  Accel accel;
-  Fields fields;
-  WalkOptions options;
-
-  explicit Room(float scale = 1, bool guided = false) : scene(scaled_stage(scale)), accel(scene) {
-    options.light_paths = 64;
-    if (!guided) return;
-    fields = train(scene, accel, 3, 1000);
-    fields.views = made_up_views(fields);
-    options.fields = &fields;
-  }
-  Room(const Room&) = delete;
-  Room& operator=(const Room&) = delete;
-
-  // So many light subpaths, and of their vertices so many at most; shares are those that light walks end with.
-  LightStore store(uint32_t paths, size_t most_places = ~size_t(0)) const {
-    LightStore out;
-    Subpath light;
-    Surface surface;
-    for (uint32_t i = 0; i < paths; ++i) {
-      Sampler sampler = make_sampler(SamplerKind::independent, 5, Side::light, i, 0);
-      Walk walk;
-      light.n = 0;
-      if (start_light(scene, options, sampler, light, walk))
-        while (light.n < most_edges && step(scene, accel, options, light, walk, surface) &&
-               scatter(options, sampler, light, walk)) {
-        }
-      add(out, light, walk.first_share);
-    }
-    out.places.resize(std::min(out.places.size(), most_places));
-    finish(out, 1);
-    return out;
-  }
-
-  // Camera subpaths that end at a vertex that can be joined.
-  std::vector<Subpath> cameras(size_t n) const {
-    std::vector<Subpath> out;
-    for (uint64_t i = 0; out.size() < n && i < 1000; ++i) {
-      Subpath camera;
-      trace_subpath(scene, accel, options, Side::camera, i, 77, 2 + int(i % 3), camera);
-      if (camera.n > 1 && connectable(camera[camera.n - 1].guide)) out.push_back(camera);
-    }
-    return out;
-  }
-};
-
-const Vertex& end_of(const Subpath& path) { return path[path.n - 1]; }
-size_t index_of(const LightStore& store, const StoreChoice& choice) {
-  return size_t(choice.place - store.places.data());
-}
-Sampler draws(uint64_t path) { return make_sampler(SamplerKind::independent, 9, Side::camera, path, 0); }
-
-// What a place brings to a camera subpath, but for visibility, times a factor of no meaning. Places of subpaths that
-// would be too long bring nothing.
-std::vector<double> brought(const LightStore& store, const Subpath& camera, int most) {
-  std::vector<double> out;
-  for (const LightStore::Place& at : store.places) {
-    Candidate c;
-    const bool joined = at.s <= most && join_vertices(store.subpath(at), at.share, camera.first(camera.n), 64, c);
-    out.push_back(joined ? double(luminance(c.value)) * (0.5 + double(hash(out.size(), 3) % 1000) / 1000) : 0);
-  }
-  return out;
-}
 
 // The mean of weight x g over draws is the sum of g over all places, over paths; and a weight wrong by a little would
 // be seen. Returns how many vertices had something to bring.
@@ -136,91 +37,6 @@ int expect_unbiased(const LightStore& store, const std::vector<Subpath>& cameras
     EXPECT_LT(5 * error, 0.2 * expected) << "too noisy to see a wrong weight";
   }
   return lit;
-}
-
-// The same of several choices at once, from all places; with chances to see them too, whatever these are.
-void expect_several_unbiased(const LightStore& store, const std::vector<Subpath>& cameras, const Visibility* seen) {
-  int lit = 0;
-  for (const Subpath& camera : cameras) {
-    const std::vector<double> g = brought(store, camera, most_edges);
-    double expected = 0;
-    for (size_t i = 0; i < g.size(); ++i) expected += g[i] * double(store.places[i].counts) / store.paths;
-    Expectation sums;
-    expect_all(store, end_of(camera), most_edges, seen, sums);
-    std::vector<StoreChoice> choices;
-    double sum = 0, squares = 0, drawn = 0;
-    constexpr int n = 10'000;
-    for (int i = 0; i < n; ++i) {
-      choose_some(store, sums, 5, uint32_t(hash(7, uint64_t(i))), choices);
-      double x = 0;
-      for (const StoreChoice& c : choices) x += double(c.weight) * g[index_of(store, c)];
-      sum += x, squares += x * x, drawn += double(choices.size());
-    }
-    const double mean = sum / n, error = std::sqrt(std::max(squares / n - mean * mean, 0.0) / n);
-    EXPECT_NEAR(mean, expected, 5 * error + 1e-4 * expected);
-    EXPECT_LE(drawn / n, 5.1);
-    if (!(expected > 0)) continue;
-    ++lit;
-    EXPECT_LT(5 * error, 0.2 * expected) << "too noisy to see a wrong weight";
-  }
-  EXPECT_GT(lit, 8);
-}
-
-TEST(LightStore, SeveralStandForAllPlaces) {
-  const Room room(1, true);
-  LightStore store = room.store(64);
-  for (size_t i = 0; i < store.places.size(); ++i) store.places[i].counts = float(1 + i % 3);
-  finish(store, std::vector<float>(store.places.size(), 0.1f));
-  expect_several_unbiased(store, room.cameras(12), nullptr);
-  Visibility seen;
-  start(store, seen);
-  for (uint32_t i = 0; i < 300; ++i) learn(seen, uint32_t(hash(i, 1) % store.places.size()), hash(i, 2) % 3 == 0);
-  expect_several_unbiased(store, room.cameras(12), &seen);
-}
-
-// What one camera vertex sees often is drawn more often by the next.
-TEST(Visibility, TellsSeenFromHidden) {
-  const Room room(1, true);
-  LightStore store = room.store(64);
-  finish(store, std::vector<float>(store.places.size(), 0.1f));
-  Visibility v;
-  start(store, v);
-  for (int k = 0; k < 20; ++k) learn(v, 3, true), learn(v, 4, false), learn(v, 40, false);
-  const auto chance = [&](uint32_t i) { return v.blocks[i / LightStore::width].chance[i % LightStore::width]; };
-  EXPECT_GT(chance(3), 0.9f);
-  EXPECT_LT(chance(4), 0.1f);
-  EXPECT_GT(chance(4), 0.03f) << "never nothing";
-  EXPECT_GT(chance(5), 2 * chance(41)) << "beside what was seen, beside what was hidden";
-}
-
-// As what is expected of lights changes a little, and lights come and go, nearly all choices stay.
-TEST(LightStore, ChoicesStay) {
-  const Room room(1, true);
-  LightStore store = room.store(64);
-  finish(store, std::vector<float>(store.places.size(), 0.1f));
-  const std::vector<Subpath> cameras = room.cameras(12);
-  const auto choices_of = [&](uint32_t key, size_t k, float count) {
-    LightStore some = store;
-    some.places[2].counts = count;
-    if (count > 1) std::reverse(some.places.begin(), some.places.end());
-    finish(some, std::vector<float>(some.places.size(), 0.1f));
-    Expectation sums;
-    expect_all(some, end_of(cameras[k]), most_edges, nullptr, sums);
-    std::vector<StoreChoice> choices;
-    choose_some(some, sums, 5, key, choices);
-    std::set<std::pair<uint32_t, int>> chosen;
-    for (const StoreChoice& c : choices) chosen.insert({c.place->path, c.place->s});
-    return chosen;
-  };
-  size_t all = 0, other = 0;
-  for (uint32_t i = 0; i < 500; ++i) {
-    const size_t k = i % cameras.size();
-    const auto a = choices_of(uint32_t(hash(3, i)), k, 1), b = choices_of(uint32_t(hash(3, i)), k, 1.2f);
-    for (const auto& c : a) other += !b.contains(c);
-    all += a.size();
-  }
-  EXPECT_GT(all, 500u);
-  EXPECT_LT(double(other), 0.03 * double(all));
 }
 
 // What fields expect to bring much is there several times; the mean over draws is what all bring.
@@ -479,4 +295,4 @@ TEST(LightStore, JoinsAsTheSubpathItself) {
 }
 
 }  // namespace
-}  // namespace ajar
+}  // namespace ajar::room

@@ -1,0 +1,101 @@
+// Several light vertices drawn at once, each on its own, as virtual point lights are: they stand for all of them, and
+// most choices stay as lights change; and the chance that a light is seen, learned by a tile.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "ajar/join/visibility.h"
+#include "room.h"
+
+namespace ajar::room {
+namespace {
+
+// The mean of the sum of weight x g over draws is the sum of g over all places, over paths; with chances to see them
+// too, whatever these are.
+void expect_several_unbiased(const LightStore& store, const std::vector<Subpath>& cameras, const Visibility* seen) {
+  int lit = 0;
+  for (const Subpath& camera : cameras) {
+    const std::vector<double> g = brought(store, camera, most_edges);
+    double expected = 0;
+    for (size_t i = 0; i < g.size(); ++i) expected += g[i] * double(store.places[i].counts) / store.paths;
+    Expectation sums;
+    expect_all(store, end_of(camera), most_edges, seen, sums);
+    std::vector<StoreChoice> choices;
+    double sum = 0, squares = 0, drawn = 0;
+    constexpr int n = 10'000;
+    for (int i = 0; i < n; ++i) {
+      choose_some(store, sums, 5, uint32_t(hash(7, uint64_t(i))), choices);
+      double x = 0;
+      for (const StoreChoice& c : choices) x += double(c.weight) * g[index_of(store, c)];
+      sum += x, squares += x * x, drawn += double(choices.size());
+    }
+    const double mean = sum / n, error = std::sqrt(std::max(squares / n - mean * mean, 0.0) / n);
+    EXPECT_NEAR(mean, expected, 5 * error + 1e-4 * expected);
+    EXPECT_LE(drawn / n, 5.1);
+    if (!(expected > 0)) continue;
+    ++lit;
+    EXPECT_LT(5 * error, 0.2 * expected) << "too noisy to see a wrong weight";
+  }
+  EXPECT_GT(lit, 8);
+}
+
+TEST(LightStore, SeveralStandForAllPlaces) {
+  const Room room(1, true);
+  LightStore store = room.store(64);
+  for (size_t i = 0; i < store.places.size(); ++i) store.places[i].counts = float(1 + i % 3);
+  finish(store, std::vector<float>(store.places.size(), 0.1f));
+  expect_several_unbiased(store, room.cameras(12), nullptr);
+  Visibility seen;
+  start(store, seen);
+  for (uint32_t i = 0; i < 300; ++i) learn(seen, uint32_t(hash(i, 1) % store.places.size()), hash(i, 2) % 3 == 0);
+  expect_several_unbiased(store, room.cameras(12), &seen);
+}
+
+// What one camera vertex sees often is drawn more often by the next.
+TEST(Visibility, TellsSeenFromHidden) {
+  const Room room(1, true);
+  LightStore store = room.store(64);
+  finish(store, std::vector<float>(store.places.size(), 0.1f));
+  Visibility v;
+  start(store, v);
+  for (int k = 0; k < 20; ++k) learn(v, 3, true), learn(v, 4, false), learn(v, 40, false);
+  const auto chance = [&](uint32_t i) { return v.blocks[i / LightStore::width].chance[i % LightStore::width]; };
+  EXPECT_GT(chance(3), 0.9f);
+  EXPECT_LT(chance(4), 0.1f);
+  EXPECT_GT(chance(4), 0.03f) << "never nothing";
+  EXPECT_GT(chance(5), 2 * chance(41)) << "beside what was seen, beside what was hidden";
+}
+
+// As what is expected of lights changes a little, and lights come and go, nearly all choices stay.
+TEST(LightStore, ChoicesStay) {
+  const Room room(1, true);
+  LightStore store = room.store(64);
+  finish(store, std::vector<float>(store.places.size(), 0.1f));
+  const std::vector<Subpath> cameras = room.cameras(12);
+  const auto choices_of = [&](uint32_t key, size_t k, float count) {
+    LightStore some = store;
+    some.places[2].counts = count;
+    if (count > 1) std::reverse(some.places.begin(), some.places.end());
+    finish(some, std::vector<float>(some.places.size(), 0.1f));
+    Expectation sums;
+    expect_all(some, end_of(cameras[k]), most_edges, nullptr, sums);
+    std::vector<StoreChoice> choices;
+    choose_some(some, sums, 5, key, choices);
+    std::set<std::pair<uint32_t, int>> chosen;
+    for (const StoreChoice& c : choices) chosen.insert({c.place->path, c.place->s});
+    return chosen;
+  };
+  size_t all = 0, other = 0;
+  for (uint32_t i = 0; i < 500; ++i) {
+    const size_t k = i % cameras.size();
+    const auto a = choices_of(uint32_t(hash(3, i)), k, 1), b = choices_of(uint32_t(hash(3, i)), k, 1.2f);
+    for (const auto& c : a) other += !b.contains(c);
+    all += a.size();
+  }
+  EXPECT_GT(all, 500u);
+  EXPECT_LT(double(other), 0.03 * double(all));
+}
+
+}  // namespace
+}  // namespace ajar::room
