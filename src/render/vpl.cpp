@@ -56,15 +56,14 @@ bool is_free(Work& work, Candidate& c, int s, int t) {
 
 // The share of a path that joins have whose edge is x - y, of all that could find it: the rest is for the walk from x
 // to y. Of the edge alone, so that both ways say the same. walked: area density of y as the walk from x finds it.
-double share_of_joins(const Job& job, const Guide& y, const Vec3& to_x, double walked) {
-  if (!can_light(y)) return 0;
-  const double lights = density_of_lights(job, y.p, y.ng, to_x);
+double share_of_joins(const Job& job, const Vec3& y, const Vec3& ng, const Vec3& to_x, double walked) {
+  const double lights = density_of_lights(job, y, ng, to_x);
   return lights > 0 ? lights / (lights + walked) : 0;  // (I1)
 }
 
 double share_at(const Job& job, std::span<const Vertex> light, const Vec3& x, double walked) {
   const Vertex& y = light.back();
-  return only_joined(light) ? 1 : share_of_joins(job, y.guide, x - y.p, walked);
+  return only_joined(light) ? 1 : share_of_joins(job, y.p, y.ng, x - y.p, walked);
 }
 
 // Whether the walk is to find what its last vertex y scatters, which joins at the one before could have found as well.
@@ -73,7 +72,7 @@ bool is_walked(Work& work) {
   const Subpath& camera = work.scratch.camera;
   const Vertex &x = camera[camera.n - 2], &y = camera[camera.n - 1];
   if (camera.n < 3 || x.delta || !connectable(x.guide) || !connectable(y.guide)) return true;
-  const double share = share_of_joins(work.job, y.guide, y.guide.wo, y.own);
+  const double share = can_light(y.guide) ? share_of_joins(work.job, y.p, y.ng, y.guide.wo, y.own) : 0;
   return work.sample.sampler.next1() >= share;
 }
 

@@ -101,8 +101,8 @@ TEST(Plan, EdgesOfLampsInSightAreTheSameNoiseToAll) {
   }
 }
 
-// A caustic lies on other light: what misses it sees the most of every pixel, and looks quiet. One pilot in twenty of this
-// size sees next to nothing of it.
+// A caustic lies on other light: what misses it sees the most of every pixel, and looks quiet. One pilot in twenty of
+// this size sees next to nothing of it.
 TEST(Plan, KnowsThatCausticsAreMissed) {
   Scene scene = load_scene(kit::source_path("scenes/glass/glass.xml"));
   set_size(scene.camera, 128, 128);
