@@ -165,7 +165,7 @@ Merged sum_up(const Disc& disc, std::vector<NearPhoton>& near) {
 
 }  // namespace
 
-bool is_one_in(uint32_t n, const Sample& sample) { return (sample.path + sample.pass) % n == 0; }
+bool is_one_in(uint32_t n, const Sample& sample) { return hash(sample.path / n, sample.pass) % n == sample.path % n; }
 
 void keep_photons(const Job& job, const Sample& sample, double share, Scratch& scratch) {
   const WalkOptions& walk = job.walk;

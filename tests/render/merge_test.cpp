@@ -141,6 +141,34 @@ TEST(Merging, ErrorFallsWithTheRadius) {
   }
 }
 
+// Luminance of all that a strategy found, unweighted.
+double raw(const RenderState& state, int s, int t) {
+  double sum = 0;
+  for (const glm::dvec3& pixel : state.pyramid.layers.at({s, t}).raw) sum += double(luminance(Rgb(pixel)));
+  return sum;
+}
+
+// The light of paths comes by merges at any of their vertices as it comes by next-event estimation, though merges
+// beyond the first vertex are with one light subpath in many, and left out where they would add little.
+TEST(Merging, FindsWhatNextEventEstimationFinds) {
+  Scene scene = cornell(24);
+  add_quad(scene, {0, 0, 60}, {1, 0, 0}, {0, 1, 0}, 0);  // radii are bounded by the scene's
+  finish(scene);
+  const Accel accel(scene);
+  RenderOptions o = with_radius("vcm", 4, 384);
+  o.techniques = true;
+  o.max_depth = 4;
+  const RenderState state = rendered(scene, accel, o);
+  double first = 0, beyond = 0, right_first = 0, right_beyond = 0;
+  for (int edges = 2; edges <= 4; ++edges) {
+    const double right = raw(state, 1, edges);
+    first += raw(state, -edges, 2), right_first += right;
+    for (int t = 3; t <= edges; ++t) beyond += raw(state, t - edges - 2, t), right_beyond += right;
+  }
+  EXPECT_NEAR(first, right_first, 0.03 * right_first);
+  EXPECT_NEAR(beyond, right_beyond, 0.06 * right_beyond);
+}
+
 // A closed box, divided by a wall of no thickness or next to none, with a gap below it or none; the lamp shines in one
 // half, the camera is in the other.
 Scene divided(float thickness, float gap = 0) {
