@@ -169,6 +169,25 @@ TEST(Merging, FindsWhatNextEventEstimationFinds) {
   EXPECT_NEAR(beyond, right_beyond, 0.06 * right_beyond);
 }
 
+// What a rough mirror reflects is not blurred by more than its own lobe, however large the radius.
+TEST(Merging, NarrowLobesStaySharp) {
+  Scene scene;
+  scene.filter = make_filter(FilterKind::box);
+  set_camera(scene, {0, 1, 2.5f}, {0, 0, 0}, 30, 24, 24);
+  Material metal;
+  metal.kind = MaterialKind::roughconductor;
+  metal.alpha_u = metal.alpha_v = 0.05f;
+  add_quad(scene, {-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, add_material(scene, metal));
+  const uint32_t lamp = add_quad(scene, {-0.15f, 0.6f, -1.5f}, {0.3f, 0, 0}, {0, 0.3f, 0}, add_diffuse(scene, Rgb(0)));
+  add_area_light(scene, lamp, Rgb(1));
+  add_quad(scene, {0, 0, 60}, {1, 0, 0}, {0, 1, 0}, 0);  // radii are bounded by the scene's
+  finish(scene);
+  const Estimate right = measure(scene, statistical("bdpt", 3), {8, 16, 1});
+  RenderOptions o = with_radius("photon", 12, 256);
+  o.max_depth = 3;
+  EXPECT_LT(error_of(render_once(scene, o), right), 0.1);
+}
+
 // A closed box, divided by a wall of no thickness or next to none, with a gap below it or none; the lamp shines in one
 // half, the camera is in the other.
 Scene divided(float thickness, float gap = 0) {
