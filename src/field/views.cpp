@@ -15,9 +15,7 @@ void count(uint32_t& n) { std::atomic_ref<uint32_t>(n).fetch_add(1, std::memory_
 
 }  // namespace
 
-ViewTallies start_tallies(const Views& views) {
-  return {std::vector<uint32_t>(2 * pair_count(views.regions))};
-}
+ViewTallies start_tallies(const Views& views) { return {std::vector<uint32_t>(2 * pair_count(views.regions))}; }
 
 void record_join(const Views& views, ViewTallies& tallies, uint32_t a, uint32_t b, bool free) {
   if (a >= views.regions || b >= views.regions) return;
@@ -34,6 +32,7 @@ Views learn_views(const Views& views, const ViewTallies& tallies, uint32_t regio
   for (size_t i = 0; i < pair_count(views.regions); ++i) {
     next.tried[i] = kept * views.tried[i] + float(tallies.counts[2 * i]);
     next.seen[i] = kept * views.seen[i] + float(tallies.counts[2 * i + 1]);
+    next.seen[i] = std::min(next.seen[i], next.tried[i]);  // counts start again after 2^32
     const float chance = std::sqrt((next.seen[i] + 1) / (next.tried[i] + 1));
     next.chance[i] = uint8_t(std::lround(255 * std::max(chance, least_chance)));
   }

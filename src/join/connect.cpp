@@ -121,9 +121,10 @@ bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int
   out.raster = k.raster;
   const Vec3 from = a.ng == Vec3(0) ? a.p : offset(a.p, a.ng, a.error, k.w);
   out.segment = {from, k.p - from};
-  // Nearer than the near plane nothing is in the way, as for camera rays.
+  // Nearer than the near plane nothing is in the way, as for camera rays. Those of an orthographic one begin there.
   const Camera& camera = scene.camera;
-  if (camera.near_clip > 0) out.segment.t_max = 1 - camera.near_clip / (camera.to_camera * Vec4(a.p, 1)).z;
+  if (camera.near_clip > 0 && camera.kind != CameraKind::orthographic)
+    out.segment.t_max = 1 - camera.near_clip / (camera.to_camera * Vec4(a.p, 1)).z;
   return true;
 }
 

@@ -46,7 +46,7 @@ void expect(const LightStore::Block& b, const Vertex& c, float near, int most, V
 
 void clear(LightStore& store) { store.vertices.clear(), store.places.clear(), store.blocks.clear(), store.paths = 0; }
 
-void add(LightStore& store, const Subpath& light, double share) {
+void add(LightStore& store, const Subpath& light, double share, float counts) {
   ++store.paths;
   const uint32_t first = uint32_t(store.vertices.size());
   int last = 0;
@@ -56,7 +56,7 @@ void add(LightStore& store, const Subpath& light, double share) {
     const float flux = flux_of(v);
     if (!(flux > 0)) continue;
     const float worth = promise(v.guide, v.beta).beyond;
-    store.places.push_back({first, s, region_of(v.guide), share, store.paths - 1, 1, flux, worth});
+    store.places.push_back({first, s, region_of(v.guide), share, store.paths - 1, counts, flux, worth});
     last = s;
   }
   store.vertices.insert(store.vertices.end(), light.vertices.begin(), light.vertices.begin() + last);

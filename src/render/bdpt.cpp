@@ -257,8 +257,10 @@ void trace_light_half(const Job& job, Sample& sample, Scratch& scratch) {
   trace_light_subpath(work);
   Halves& halves = *scratch.halves;
   const bool merges = job.walk.merging.paths > 0;
-  if (!job.merges_alone && (!merges || is_one_in(stored_share, sample)))
-    add(halves.store, scratch.light, work.light_share);
+  if (const uint32_t one_in = merges ? stored_share : 1; job.merges_alone || !is_one_in(one_in, sample))
+    ++halves.store.paths;
+  else
+    add(halves.store, scratch.light, work.light_share, float(one_in));
   if (merges) keep_photons(job, sample, work.light_share, scratch);
   charge(scratch, scratch.ledger->light_ticks);
   if (!sample.teaches) return;

@@ -29,7 +29,11 @@ void join_lens(const Job& job, Sampler& sampler, double share, Scratch& scratch,
   // The film takes as many light subpaths as it has pixels.
   const double pixels = double(camera.crop_width) * camera.crop_height;
   c.value *= float(weight(job.walk.heuristic, c) * pixels / job.walk.light_paths);
-  if (c.value.x + c.value.y + c.value.z < infinity) splats.push_back({c.raster, c.value});
+  const float sum = c.value.x + c.value.y + c.value.z;
+  if (sum >= 0 && sum < infinity)
+    splats.push_back({c.raster, c.value});
+  else
+    ++scratch.rejected;
 }
 
 // Points of one sequence for either half of the image, numbered by passes and paths, so that the lights of a pass are

@@ -76,6 +76,15 @@ bool is_walked(Work& work) {
   return work.sample.sampler.next1() >= share;
 }
 
+// What camera subpaths know of W: only how light subpaths, which it guides, would have found a caustic.
+void guide_way_back(const Job& job, const Surface& surface, Subpath& camera) {
+  if (!job.guided || !is_caustic(camera, camera.n)) return;
+  Guide& guide = camera[camera.n - 1].guide;
+  Guide guided;
+  make_guide(*job.scene, job.walk.fields, Side::camera, surface, guide.wo, guided);
+  guide.mix_other = guided.mix_other, guide.back = guided.back;
+}
+
 void join_lights(Work& work, const Surface& surface) {
   const Job& job = work.job;
   const Subpath& camera = work.scratch.camera;
@@ -154,6 +163,7 @@ void walk_on(Work& work, Walk& walk) {
       charge_join(scratch, 0, camera.n + 1);
       return;
     }
+    guide_way_back(job, surface, camera);
     join_lights(work, surface);
     if (camera.n == 2 && is_clear(camera[1])) return;
     walked = is_walked(work);

@@ -273,6 +273,15 @@ Scene with_clip_planes() {
   return finished(std::move(scene));
 }
 
+// A plate just behind the near plane, which hides what is behind it.
+Scene with_clipped_orthographic() {
+  Scene scene = stage();
+  set_orthographic(scene.camera, look_at({0, 0, 3}, {0, 0, 0}));
+  scene.camera.near_clip = 1.8f;
+  add_quad(scene, {-0.7f, -0.7f, 0.8f}, {0.9f, 0, 0}, {0, 0.9f, 0}, add_diffuse(scene, Rgb(0.2f)));
+  return finished(std::move(scene));
+}
+
 // Surfaces that meet under small angles and lights that touch surfaces: vertices almost touch.
 Scene with_corners() {
   Scene scene = stage();
@@ -404,6 +413,7 @@ const Feature features[] = {
     {"instances", with_instances},
     {"thin_lens", [] { return with_camera(CameraKind::thinlens); }},
     {"orthographic", [] { return with_camera(CameraKind::orthographic); }},
+    {"clipped_orthographic", with_clipped_orthographic},
     {"principal_point", [] { return with_camera(CameraKind::perspective); }},
     {"crop", with_crop},
     {"clip_planes", with_clip_planes},

@@ -169,6 +169,14 @@ TEST(Merging, FindsWhatNextEventEstimationFinds) {
   EXPECT_NEAR(beyond, right_beyond, 0.06 * right_beyond);
 }
 
+// Where a pixel is alone, in most passes no light subpath is kept for joins; those that are kept stand for all.
+TEST(Merging, OnePixel) {
+  const Scene scene = cornell(1);
+  const double right = mean(render_once(scene, with_radius("bdpt", 0, 20000)));
+  const double found = mean(render_once(scene, with_radius("vcm", 0.2f, 20000)));
+  EXPECT_NEAR(found, right, 0.025 * right);
+}
+
 // What a rough mirror reflects is not blurred by more than its own lobe, however large the radius.
 TEST(Merging, NarrowLobesStaySharp) {
   Scene scene;

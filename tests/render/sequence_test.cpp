@@ -96,6 +96,27 @@ TEST(Vpl, NarrowLobesKeepTheirEnergy) {
   }
 }
 
+// All that the lens sees is a floor that is lit by way of a wall and a mirror: splats, guided to the mirror, and walks
+// find it, and must agree on each other's densities.
+TEST(Vpl, CausticsOfGuidedLightKeepTheirEnergy) {
+  Scene scene;
+  scene.filter = make_filter(FilterKind::box);
+  set_camera(scene, {0.4f, 1.5f, 1.5f}, {0.4f, 0, 0}, 14, 40, 40);
+  const uint32_t white = add_diffuse(scene, Rgb(0.8f)), black = add_diffuse(scene, Rgb(0));
+  Material mirror;
+  mirror.kind = MaterialKind::conductor;
+  add_quad(scene, {0.1f, 0, 0.4f}, {0.6f, 0, 0}, {0, 0, -0.8f}, white);                        // the floor
+  add_quad(scene, {-1, 0, 0.5f}, {0, 0, -1}, {0, 1, 0}, white);                                // the wall
+  add_quad(scene, {1, 0.1f, -0.3f}, {0, 0, 0.6f}, {0, 0.6f, 0}, add_material(scene, mirror));  // across from it
+  add_quad(scene, {-0.1f, -0.1f, -0.6f}, {0, 0, 1.2f}, {0, 0.55f, 0}, black);  // hides the one from the other
+  const uint32_t lamp = add_quad(scene, {-0.7f, 0.7f, 0.1f}, {0, 0, -0.2f}, {0, -0.1f, 0}, black);
+  add_area_light(scene, lamp, Rgb(50));
+  finish(scene);
+  const double right = mean(measure(scene, statistical("path"), {.batches = 4, .passes = 512, .seed = 3}));
+  const double found = mean(measure(scene, statistical("vpl"), {.batches = 8, .passes = 64, .seed = 3}));
+  EXPECT_NEAR(found / right, 1, 0.04);
+}
+
 TEST(Sequence, ImagesNeverDrawTheNumbersThatTaught) {
   SequenceOptions s;
   for (const bool numbers : {true, false}) {

@@ -48,8 +48,8 @@ struct StoreChoice {
 };
 
 void clear(LightStore& store);
-/// share: of the walk.
-void add(LightStore& store, const Subpath& light, double share);
+/// share: of the walk. counts: for so many light subpaths, where others are left out; paths counts those too.
+void add(LightStore& store, const Subpath& light, double share, float counts = 1);
 /// Puts in place of all places as many that are drawn (systematic sampling, u in [0, 1)): half of the choice is even,
 /// half goes by what the fields expect each vertex to bring to the image. Those that are drawn count for the others.
 /// Nothing happens where fields know nothing. (J2)
