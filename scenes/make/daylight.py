@@ -26,6 +26,7 @@ HEAD = '''<!-- {title}; made by scenes/make/daylight.py.
 	<emitter type="sunsky">
 		<float name="turbidity" value="3"/>
 		<vector name="sun_direction" value="{sun}"/>
+		<transform name="to_world"><rotate x="1" angle="-90"/></transform>
 		<float name="scale" value="{scale}"/>
 	</emitter>
 '''

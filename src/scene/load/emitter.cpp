@@ -25,15 +25,6 @@ Light make_light(Params& p, LightKind kind) {
 
 void add(Loader& loader, Light&& light) { loader.scene.lights.push_back(std::move(light)); }
 
-DMat4 regular_to_world(Params& p) {
-  const DMat4 m = to_world(p);
-  const DVec3 x(m[0]), y(m[1]), z(m[2]);
-  const double size = glm::length(x) * glm::length(y) * glm::length(z);
-  if (!(size > 0) || !(std::abs(glm::dot(x, glm::cross(y, z))) > 1e-9 * size))
-    fail(p.loader, p.node, "its to_world is singular");
-  return m;
-}
-
 void area(Params& p, uint32_t shape) {
   Light light = make_light(p, LightKind::area);
   light.radiance = slot(p, {"radiance"}, 1.0f, Colour::emission);
@@ -144,6 +135,15 @@ constexpr Entry entries[] = {
 
 }  // namespace
 
+DMat4 regular_to_world(Params& p) {
+  const DMat4 m = to_world(p);
+  const DVec3 x(m[0]), y(m[1]), z(m[2]);
+  const double size = glm::length(x) * glm::length(y) * glm::length(z);
+  if (!(size > 0) || !(std::abs(glm::dot(x, glm::cross(y, z))) > 1e-9 * size))
+    fail(p.loader, p.node, "its to_world is singular");
+  return m;
+}
+
 Mat4 orientation(const DMat4& m) {
   DMat4 r(1);
   for (int i = 0; i < 3; ++i) r[i] = DMat4::col_type(glm::normalize(DVec3(m[i])), 0);
@@ -168,7 +168,7 @@ void load_emitter(Loader& loader, const Node& node, uint32_t shape) {
     }
     entry->read(p);
   }
-  finish(p, {"id", "cache", "mis_compensation", "albedo", "stretch", "resolution"});
+  finish(p, {"id", "cache", "mis_compensation", "albedo", "resolution"});
 }
 
 }  // namespace ajar

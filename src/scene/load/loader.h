@@ -108,6 +108,8 @@ void finish(Params& params, std::initializer_list<const char*> harmless = {});
 DMat4 transform_of(const Loader& loader, const Node& node);
 /// The transform parameter, identity if there is none; an Error where it is singular or projective.
 DMat4 to_world(Params& params, const char* name = "to_world");
+/// The same of a light, which has to be invertible.
+DMat4 regular_to_world(Params& p);
 /// Rotation (and mirror) of a transform, without its scale and position; lights at infinity have neither.
 Mat4 orientation(const DMat4& m);
 /// Axes equal in length and at right angles, to a relative 1e-4.

@@ -11,9 +11,12 @@ namespace ajar {
 namespace {
 
 struct Daylight {
-  double turbidity = 3, zenith = 0, azimuth = 0;  // of the sun, from +y and from -z over +x [rad]
-  DVec3 sun{0, 1, 0};                             // towards it, in the light's own space
+  double turbidity = 3, zenith = 0;  // of the sun, from +y [rad]
+  DVec3 sun{0, 1, 0};                // towards it, in the sky's space: +y is up, -z north
+  Mat4 to_world{1};                  // of the sky's space
 };
+
+constexpr double sun_diameter = 0.5358;  // degrees
 
 DVec3 direction_of(double zenith, double azimuth) {
   return {std::sin(azimuth) * std::sin(zenith), std::cos(zenith), -std::cos(azimuth) * std::sin(zenith)};
@@ -41,10 +44,17 @@ void place_sun(Params& p, Daylight& day) {
   const double angle = sidereal - ascension;
   const double zenith = std::acos(std::cos(latitude) * std::cos(angle) * std::cos(declination) +
                                   std::sin(declination) * std::sin(latitude));
-  day.azimuth =
+  const double azimuth =
       std::atan2(-std::sin(angle), std::tan(declination) * std::cos(latitude) - std::sin(latitude) * std::cos(angle));
   day.zenith = zenith + 6371.01 / 149597890 * std::sin(zenith);  // parallax
-  day.sun = direction_of(day.zenith, day.azimuth);
+  // counted from -z over +x; in Mitsuba 3 from +x over +y
+  day.sun = direction_of(day.zenith, p.loader.document.old ? azimuth : std::numbers::pi / 2 - azimuth);
+}
+
+// +y of the sky's space is +z of the light's own since Mitsuba 3.
+Mat4 sky_to_world(Params& p) {
+  const DMat4 m = regular_to_world(p), rise({1, 0, 0, 0}, {0, 0, 1, 0}, {0, -1, 0, 0}, {0, 0, 0, 1});
+  return orientation(p.loader.document.old ? m : m * rise);
 }
 
 // Parameters that sky, sun and sunsky share; Mitsuba's names.
@@ -52,14 +62,15 @@ Daylight daylight(Params& p) {
   Daylight day;
   day.turbidity = number(p, "turbidity", 3);
   if (!(day.turbidity >= 1 && day.turbidity <= 10)) fail(p.loader, p.node, "turbidity should be from 1 to 10");
+  day.to_world = sky_to_world(p);
   place_sun(p, day);
   if (const Node* d = find(p, {"sun_direction"})) {
     const DVec3 towards = vector_of(p.loader, *d, 0);
     if (!(glm::length(towards) > 1e-30)) fail(p.loader, *d, "its direction is the zero vector");
-    day.sun = glm::normalize(towards);
+    day.sun = glm::normalize(glm::inverse(glm::dmat3(glm::dmat4(day.to_world))) * glm::normalize(towards));
     day.zenith = std::acos(std::clamp(day.sun.y, -1.0, 1.0));
   }
-  if (day.zenith > glm::radians(89.9))
+  if (day.zenith > glm::radians(90.001))  // the horizon, turned and rounded
     fail(p.loader, p.node, "the sun is below the horizon: take another sun_direction, or another time and place");
   return day;
 }
@@ -143,13 +154,13 @@ Rgb sun_radiance(const Daylight& day) {
   return rgb_of_list(std::move(list), Colour::emission);
 }
 
-double scale_of(Params& p, const char* name) {
-  const double scale = number(p, name, 1);
+double scale_of(Params& p, const char* name, double otherwise) {
+  const double scale = number(p, name, otherwise);
   if (scale < 0) fail(p.loader, p.node, fmt::format("{} should not be negative", name));
   return scale;
 }
 
-void add_sky(Params& p, const Daylight& day, double scale, const Mat4& turn, float weight) {
+void add_sky(Params& p, const Daylight& day, double scale, float weight) {
   const int width = integer(p, "resolution", 512, 8, 8192), height = width / 2;
   const Sky sky = make_sky(day);
   Image image;
@@ -168,24 +179,33 @@ void add_sky(Params& p, const Daylight& day, double scale, const Mat4& turn, flo
   scene.images.push_back(std::move(image));
   Light light;
   light.kind = LightKind::envmap;
-  light.to_world = turn;
+  light.to_world = day.to_world;
   light.sampling_weight = weight;
   light.environment = uint32_t(scene.environments.size());
   scene.environments.push_back(make_environment(scene, id, float(scale)));
   scene.lights.push_back(light);
 }
 
-void add_sun(Params& p, const Daylight& day, double scale, const Mat4& turn, float weight) {
-  const double wide = positive(p, "sun_radius_scale", 1), half = glm::radians(0.5358 / 2) * wide;
-  if (half > glm::radians(60.0))
-    fail(p.loader, p.node, "sun_radius_scale should leave the sun smaller than 120 degrees");
+// Half the angle across the sun [rad].
+double sun_half(Params& p) {
+  const double wide = scale_of(p, "sun_radius_scale", 1), across = scale_of(p, "sun_aperture", sun_diameter);
+  const double half = has(p, "sun_aperture") ? glm::radians(across / 2) : glm::radians(sun_diameter / 2) * wide;
+  if (half > glm::radians(60.0)) fail(p.loader, p.node, "the sun should be smaller than 120 degrees");
+  return half;
+}
+
+// A larger disc gives as much light as the sun's own, and so does a direction alone.
+void add_sun(Params& p, const Daylight& day, double scale, float weight) {
+  const double half = sun_half(p), own = sqr(std::sin(glm::radians(sun_diameter / 4)));
   Light light;
-  light.kind = LightKind::sun;
+  light.kind = half < 1e-6 ? LightKind::directional : LightKind::sun;
   light.sampling_weight = weight;
-  light.cone = float(2 * std::sin(half / 2) * std::sin(half / 2));
-  light.direction = -Vec3(glm::normalize(DVec3(glm::dmat3(glm::dmat4(turn)) * day.sun)));
-  // A larger disc gives as much light as the sun's own.
-  const double dimmer = sqr(std::sin(glm::radians(0.5358 / 4)) / std::sin(half / 2));
+  light.direction = -Vec3(glm::normalize(glm::dmat3(glm::dmat4(day.to_world)) * day.sun));
+  double dimmer = 4 * std::numbers::pi * own;
+  if (light.kind == LightKind::sun) {
+    light.cone = float(2 * std::sin(half / 2) * std::sin(half / 2));
+    dimmer = sqr(std::sin(glm::radians(sun_diameter / 4)) / std::sin(half / 2));
+  }
   light.radiance = Slot(sun_radiance(day) * float(scale * dimmer));
   p.loader.scene.lights.push_back(light);
 }
@@ -194,13 +214,11 @@ void add_sun(Params& p, const Daylight& day, double scale, const Mat4& turn, flo
 
 void load_daylight(Params& p, bool with_sky, bool with_sun) {
   const Daylight day = daylight(p);
-  const double weight = number(p, "sampling_weight", 1), scale = scale_of(p, "scale");
+  const double weight = number(p, "sampling_weight", 1), scale = scale_of(p, "scale", 1);
   if (weight < 0) fail(p.loader, p.node, "sampling_weight should not be negative");
-  const double sky = with_sky && with_sun ? scale_of(p, "sky_scale") : 1,
-               sun = with_sky && with_sun ? scale_of(p, "sun_scale") : 1;
-  const Mat4 turn = orientation(to_world(p));
-  if (with_sky) add_sky(p, day, scale * sky, turn, float(weight));
-  if (with_sun) add_sun(p, day, scale * sun, turn, float(weight));
+  const bool both = with_sky && with_sun;
+  if (with_sky) add_sky(p, day, both ? scale_of(p, "sky_scale", scale) : scale, float(weight));
+  if (with_sun) add_sun(p, day, both ? scale_of(p, "sun_scale", scale) : scale, float(weight));
 }
 
 }  // namespace ajar

@@ -132,9 +132,13 @@ TEST(Emitters, Directional) {
   EXPECT_SAYS(error_of(emitter("directional", "<vector name='direction' value='0, 0, 0'/>")), "zero vector");
 }
 
+Scene old(const std::string& inside) { return load_inside(inside, {}, "0.6.0"); }
+Light read_old(const std::string& type, const std::string& inside) { return old(emitter(type, inside)).lights.at(0); }
+std::string sun_at(const std::string& direction) { return "<vector name='sunDirection' value='" + direction + "'/>"; }
+
 TEST(Emitters, SunAndSky) {
   const std::string high = "<vector name='sunDirection' value='0 1 1'/>";
-  const Scene both = load_inside(emitter("sunsky", high + "<float name='skyScale' value='2'/>"));
+  const Scene both = old(emitter("sunsky", high + "<float name='skyScale' value='2'/>"));
   ASSERT_EQ(both.lights.size(), 2u);
   EXPECT_EQ(both.lights[0].kind, LightKind::envmap);
   EXPECT_EQ(both.lights[1].kind, LightKind::sun);
@@ -142,23 +146,83 @@ TEST(Emitters, SunAndSky) {
   // Of one size without the scale: across the beam the sun gives somewhat more than the whole sky does.
   EXPECT_GT(power(both, 1), 0.5f * power(both, 0));
   EXPECT_LT(power(both, 1), 5 * power(both, 0));
-  EXPECT_NEAR(power(both, 0) / power(load_inside(emitter("sky", high)), 0), 2, 1e-3);
+  EXPECT_NEAR(power(both, 0) / power(old(emitter("sky", high)), 0), 2, 1e-3);
   // A larger disc, as much light.
-  const Scene wide = load_inside(emitter("sun", high + "<float name='sunRadiusScale' value='10'/>"));
-  EXPECT_NEAR(power(wide, 0) / power(load_inside(emitter("sun", high)), 0), 1, 1e-3);
+  const Scene wide = old(emitter("sun", high + "<float name='sunRadiusScale' value='10'/>"));
+  EXPECT_NEAR(power(wide, 0) / power(old(emitter("sun", high)), 0), 1, 1e-3);
   // Low suns are redder.
-  const Rgb noon = read("sun", "<vector name='sunDirection' value='0 1 0'/>").radiance.value,
-            evening = read("sun", "<vector name='sunDirection' value='1 0.1 0'/>").radiance.value;
+  const Rgb noon = read_old("sun", "<vector name='sunDirection' value='0 1 0'/>").radiance.value,
+            evening = read_old("sun", "<vector name='sunDirection' value='1 0.1 0'/>").radiance.value;
   EXPECT_GT(evening.x / evening.z, 2 * noon.x / noon.z);
   // Midsummer noon in Oslo: 53.5 degrees high, in the south (+z).
+  const Light oslo = read_old("sun",
+                              "<integer name='month' value='6'/><integer name='day' value='21'/><float name='hour' "
+                              "value='12'/><float name='minute' value='19'/><float name='timezone' value='1'/><float "
+                              "name='latitude' value='59.91'/><float name='longitude' value='10.75'/>");
+  EXPECT_NEAR(-oslo.direction.y, std::sin(glm::radians(53.5f)), 0.01f);
+  EXPECT_GT(-oslo.direction.z, 0.55f);
+  EXPECT_SAYS(error_of(emitter("sunsky", sun_at("0 0 -1"))), "below the horizon");
+  EXPECT_EQ(old(emitter("sunsky", sun_at("1 0 0"))).lights.size(), 2u);  // on the horizon
+  EXPECT_SAYS(error_of(emitter("sky", high + "<float name='turbidity' value='0'/>")), "turbidity");
+}
+
+// The sun stands where it is said to, however the sky is turned.
+TEST(Emitters, SunDirectionIsOfTheWorld) {
+  const std::string lying = "<transform name='toWorld'><rotate x='1' angle='90'/></transform>";  // +y to +z
+  const Scene s = old(emitter("sunsky", sun_at("0 0.5 1") + lying));
+  const Vec3 towards = glm::normalize(Vec3(0, 0.5f, 1));
+  EXPECT_RGB(s.lights[1].direction, -towards.x, -towards.y, -towards.z, 1e-6);
+  EXPECT_EQ(environment(s, 0, {0, 0, -1}), Rgb(0));
+  EXPECT_EQ(environment(s, 0, glm::normalize(Vec3(0, 0.5f, -0.1f))), Rgb(0));
+  EXPECT_GT(environment(s, 0, {0, 0, 1}).y, 0);
+  EXPECT_GT(environment(s, 0, towards).y, 3 * environment(s, 0, glm::normalize(Vec3(0, -0.5f, 1))).y);
+  EXPECT_SAYS(error_of(emitter("sun", "<transform name='toWorld'><scale x='0'/></transform>")), "singular");
+}
+
+TEST(Emitters, SkiesOfNewFilesHaveZUp) {
+  const Scene z = load_inside(emitter("sunsky", sun_at("1 0.2 0.5"))), y = old(emitter("sunsky", sun_at("1 0.5 -0.2")));
+  EXPECT_RGB(z.lights[1].radiance.value / y.lights[1].radiance.value, 1, 1, 1, 1e-6);
+  EXPECT_EQ(environment(z, 0, {0, 0, -1}), Rgb(0));
+  for (const Vec3& w : {Vec3(0, 0.6f, 0.8f), Vec3(0.8f, 0, 0.6f), Vec3(0, 0, 1)})
+    EXPECT_RGB(environment(z, 0, w) / environment(y, 0, {w.x, w.z, -w.y}), 1, 1, 1, 1e-4);
+  // A file that turns it upright: the sky of an old one.
+  const Scene turned_up = load_inside(
+      emitter("sunsky", sun_at("1 0.5 -0.2") + "<transform name='to_world'><rotate x='1' angle='-90'/></transform>"));
+  EXPECT_RGB(environment(turned_up, 0, {0, 0.6f, 0.8f}) / environment(y, 0, {0, 0.6f, 0.8f}), 1, 1, 1, 1e-5);
+  // North is +x, east +y: noon in Oslo again.
   const Light oslo = read("sun",
                           "<integer name='month' value='6'/><integer name='day' value='21'/><float name='hour' "
                           "value='12'/><float name='minute' value='19'/><float name='timezone' value='1'/><float "
                           "name='latitude' value='59.91'/><float name='longitude' value='10.75'/>");
-  EXPECT_NEAR(-oslo.direction.y, std::sin(glm::radians(53.5f)), 0.01f);
-  EXPECT_GT(-oslo.direction.z, 0.55f);
-  EXPECT_SAYS(error_of(emitter("sunsky", "<vector name='sunDirection' value='0 -1 0'/>")), "below the horizon");
-  EXPECT_SAYS(error_of(emitter("sky", high + "<float name='turbidity' value='0'/>")), "turbidity");
+  EXPECT_RGB(-oslo.direction, -std::cos(glm::radians(53.5)), 0, std::sin(glm::radians(53.5)), 0.02);
+}
+
+TEST(Emitters, SunOfAnySizeGivesTheSameLight) {
+  const auto sun = [](const std::string& name, const std::string& value) {
+    return read_old("sun", sun_at("0 1 1") + "<float name='" + name + "' value='" + value + "'/>");
+  };
+  const auto solid_angle = [](const Light& l) { return 2 * std::numbers::pi_v<float> * l.cone; };
+  const Light own = sun("sunRadiusScale", "1"), wide = sun("sun_aperture", "5"), none = sun("sunRadiusScale", "0");
+  EXPECT_NEAR(wide.cone, 1 - std::cos(glm::radians(2.5)), 1e-8);
+  EXPECT_NEAR(wide.radiance.value.y * solid_angle(wide) / (own.radiance.value.y * solid_angle(own)), 1, 1e-4);
+  EXPECT_EQ(none.kind, LightKind::directional);
+  EXPECT_NEAR(none.radiance.value.y / (own.radiance.value.y * solid_angle(own)), 1, 1e-4);
+  EXPECT_EQ(none.direction, own.direction);
+  EXPECT_EQ(sun("sun_aperture", "0").kind, LightKind::directional);
+  EXPECT_SAYS(error_of(emitter("sun", "<float name='sunRadiusScale' value='-1'/>")), "should not be negative");
+  EXPECT_SAYS(error_of(emitter("sun", "<float name='sun_aperture' value='130'/>")), "smaller than 120 degrees");
+}
+
+// scale stands for those of sky and sun that are not given.
+TEST(Emitters, ScaleOfSunsky) {
+  const auto scaled = [](const std::string& name, const std::string& value) {
+    return "<float name='" + name + "' value='" + value + "'/>";
+  };
+  const Scene one = old(emitter("sunsky", sun_at("0 1 1"))),
+              s = old(emitter("sunsky", sun_at("0 1 1") + scaled("scale", "2") + scaled("skyScale", "3")));
+  EXPECT_NEAR(power(s, 0) / power(one, 0), 3, 1e-4);
+  EXPECT_NEAR(power(s, 1) / power(one, 1), 2, 1e-4);
+  EXPECT_TRUE(says(old(emitter("sky", scaled("stretch", "2"))).notes, "\"stretch\" is not used"));
 }
 
 TEST(Emitters, UnknownOnes) {
