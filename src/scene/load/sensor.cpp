@@ -106,9 +106,12 @@ DVec3 take_scale(Params& p, DMat4& m) {
 
 void read_lens(Params& p, Camera& camera) {
   if (camera.kind != CameraKind::thinlens) return;
-  camera.aperture = float(positive(p, "aperture_radius", 0));
-  if (!(camera.aperture > 0)) fail(p.loader, p.node, "needs an aperture_radius greater than 0");
-  camera.focus = float(positive(p, "focus_distance", 1));
+  camera.aperture = float(number(p, "aperture_radius", -1));
+  if (!(camera.aperture >= 0)) fail(p.loader, p.node, "needs an aperture_radius, 0 or more");
+  camera.focus = float(positive(p, "focus_distance", double(camera.far_clip)));
+  if (camera.aperture > 0) return;
+  camera.kind = CameraKind::perspective;
+  note(p.loader, p.node, "an aperture_radius of 0 is a pinhole: rendered as perspective");
 }
 
 void read_clip(Params& p, Camera& camera) {
@@ -137,8 +140,8 @@ void read_view(Params& p, Camera& camera) {
   const double x = number(p, "principal_point_offset_x", 0), y = number(p, "principal_point_offset_y", 0);
   if (!(std::abs(x) <= 100 && std::abs(y) <= 100)) fail(p.loader, p.node, "principal_point_offset should be small");
   camera.principal = Vec2(float(x), float(y));
-  read_lens(p, camera);
   read_clip(p, camera);
+  read_lens(p, camera);
 }
 
 void read_sampler(Loader& loader, const Node& node) {
@@ -185,9 +188,7 @@ void load_sensor(Loader& loader, const Node& node) {
   for (const Node* medium : nested(p, "medium"))
     unsupported(loader, *medium, "participating media are not supported", "left out");
   read_view(p, camera);
-  if (camera.kind != CameraKind::thinlens) find(p, {"focus_distance", "aperture_radius"});
-  if (camera.kind == CameraKind::orthographic) find(p, {"fov", "fov_axis"});
-  finish(p, {"id", "shutter_open", "shutter_close", "srf"});
+  finish(p, {"id", "shutter_open", "shutter_close", "srf", "focus_distance", "aperture_radius", "fov", "fov_axis"});
 }
 
 void load_integrator(Loader& loader, const Node& node) {

@@ -117,7 +117,13 @@ TEST(Sensors, ThinLens) {
   EXPECT_FLOAT_EQ(c.aperture, 0.1f);
   EXPECT_FLOAT_EQ(c.focus, 4);
   EXPECT_SAYS(error("", "thinlens"), "needs an aperture_radius");
-  EXPECT_SAYS(error("<float name='aperture_radius' value='-1'/>", "thinlens"), "should be greater than 0");
+  EXPECT_SAYS(error("<float name='aperture_radius' value='-1'/>", "thinlens"), "needs an aperture_radius, 0 or more");
+  const std::string wide = "<float name='aperture_radius' value='0.1'/>";
+  EXPECT_FLOAT_EQ(read(wide, "thinlens").camera.focus, 10000);
+  EXPECT_FLOAT_EQ(read(wide + "<float name='farClip' value='50'/>", "thinlens").camera.focus, 50);
+  const Scene pinhole = read("<float name='aperture_radius' value='0'/>", "thinlens");
+  EXPECT_EQ(pinhole.camera.kind, CameraKind::perspective);
+  EXPECT_TRUE(says(pinhole.notes, "is a pinhole"));
 }
 
 TEST(Sensors, ClipAndPrincipalPoint) {
