@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "ajar/core/error.h"
+#include "entities.h"
 #include "node.h"
 
 namespace ajar {
@@ -73,6 +74,16 @@ void parse(const Document& document, pugi::xml_document& xml, const Source& s, c
                             result.description()));
 }
 
+void look_ahead(Reader& r, const pugi::xml_node& xml, int depth);
+void look_ahead(Reader& r, const std::string& path, int depth) {
+  pugi::xml_document included;
+  try {
+    const std::string text = expand_entities(read_text(path), fs::path(path).parent_path().string(), path);
+    if (included.load_buffer(text.data(), text.size())) look_ahead(r, included.document_element(), depth);
+  } catch (const Error&) {
+  }
+}
+
 // Defaults that a file and those it includes give anywhere. Quiet about what is wrong: the real reading will tell.
 void look_ahead(Reader& r, const pugi::xml_node& xml, int depth) {
   if (depth > max_depth) return;
@@ -84,9 +95,7 @@ void look_ahead(Reader& r, const pugi::xml_node& xml, int depth) {
     if (tag != "include" || depth > max_include_depth) continue;
     Node here;
     const std::string path = find_file(r.document, here, child.attribute("filename").value());
-    pugi::xml_document included;
-    if (path.empty() || !r.looked.insert(path).second) continue;
-    if (included.load_file(path.c_str())) look_ahead(r, included.document_element(), depth + 1);
+    if (!path.empty() && r.looked.insert(path).second) look_ahead(r, path, depth + 1);
   }
 }
 
@@ -181,9 +190,10 @@ void read_include(Reader& r, const Source& s, const pugi::xml_node& xml, const N
     fail(r, s, xml, fmt::format("{} includes itself", name));
   if (int(r.including.size()) > max_include_depth)
     fail(r, s, xml, fmt::format("files include each other more than {} deep", max_include_depth));
-  const std::string text = read_text(path);
+  const std::string folder = fs::path(path).parent_path().string();
+  const std::string text = expand_entities(read_text(path), folder, path);
   r.document.files.push_back(path);
-  const Source inner = make_source(text, uint32_t(r.document.files.size() - 1), fs::path(path).parent_path().string());
+  const Source inner = make_source(text, uint32_t(r.document.files.size() - 1), folder);
   pugi::xml_document parsed;
   parse(r.document, parsed, inner, path);
   r.including.push_back(canonical);
@@ -295,7 +305,8 @@ Document read_document(const std::string& text, const std::string& folder, const
   Document document;
   document.files.push_back(name);
   document.folders.push_back(folder.empty() ? "." : folder);
-  const Source source = make_source(text, 0, document.folders.front());
+  const std::string expanded = expand_entities(text, document.folders.front(), name);
+  const Source source = make_source(expanded, 0, document.folders.front());
   pugi::xml_document xml;
   parse(document, xml, source, name);
   Reader r{document, xml.document_element(), defines};
