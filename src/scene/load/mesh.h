@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -27,7 +28,9 @@ struct MeshOptions {
   bool flip_normals = false;    ///< turns the surface inside out: winding and normals
   bool flip_v = false;          ///< v becomes 1 - v
   float max_smooth_angle = -1;  ///< degrees; 0 or more: normals are made anew, edges sharper than this stay sharp
-  Mat4 to_world{1};             ///< applied before normals are made, which a mirror or uneven scale would change
+  /// OBJ: whether to take faces by the name that usemtl gave them (empty before the first); all where it is not set.
+  std::function<bool(std::string_view)> takes_material;
+  Mat4 to_world{1};  ///< applied before normals are made, which a mirror or uneven scale would change
 };
 
 // All readers: a file without normals gets smooth ones (angle-weighted means over the faces at a vertex, Thürmer and
@@ -37,7 +40,7 @@ struct MeshOptions {
 // ones are right. Triangles without area stay. Throws Error that names the file and line, vertex or face: file
 // unreadable, malformed or truncated, index out of range, position, uv or colour not finite.
 
-/// Wavefront OBJ, the whole file as one mesh: objects, groups, materials, lines and curves are passed over. Vertices
+/// Wavefront OBJ, the whole file as one mesh: objects, groups, lines and curves are passed over. Vertices
 /// with the same v, vt and vn index are shared. Faces of fewer than three corners have no area and are left out.
 Mesh read_obj(const std::string& path, const MeshOptions& options);
 /// Stanford PLY 1.0, ascii or binary of either byte order. Integer colours are scaled to [0, 1].

@@ -11,9 +11,9 @@
 
 namespace ajar {
 
-/// An element. Tag, type and name are in snake_case; `written` keeps the type as the author spelt it.
+/// An element. Tag, type and name are in snake_case; `written` and `named` keep type and name as the author spelt them.
 struct Node {
-  std::string tag, type, name, id, written;
+  std::string tag, type, name, id, written, named;
   std::vector<std::pair<std::string, std::string>> attributes;  ///< the others, names in snake_case
   std::vector<Node> children;
   uint32_t file = 0, line = 0;  ///< Document::files, counted from 1

@@ -161,8 +161,22 @@ void read_face(Cursor& in, Statements& out) {
   }
 }
 
-Statements read_statements(std::string_view text, const std::string& name) {
+// The name after usemtl: all of the line, for names have blanks.
+std::string_view read_name(Cursor& in) {
+  in.skip_blanks();
+  const char* begin = in.p;
+  while (!in.at_break()) ++in.p;
+  const char* end = in.p;
+  while (end != begin && Cursor::is_blank(end[-1])) --end;
+  return {begin, size_t(end - begin)};
+}
+
+Statements read_statements(std::string_view text, const std::string& name, const MeshOptions& options) {
   Statements out;
+  const auto takes = [&](std::string_view material) {
+    return !options.takes_material || options.takes_material(material);
+  };
+  bool taking = takes("");
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   out.v.reserve(text.size() / 128), out.corners.reserve(text.size() / 32);
   Cursor in{text.data(), text.data() + text.size(), name};
@@ -177,8 +191,10 @@ Statements read_statements(std::string_view text, const std::string& name) {
         read_texture_vertex(in, out);
       else if (keyword == "vn")
         read_normal(in, out);
-      else if (keyword == "f")
+      else if (keyword == "f" && taking)
         read_face(in, out);
+      else if (keyword == "usemtl")
+        taking = takes(read_name(in));
     }
     in.skip_line();
   }
@@ -256,7 +272,7 @@ Mesh join(const Statements& in, const std::string& name) {
 }  // namespace
 
 Mesh parse_obj(std::string_view text, const std::string& name, const MeshOptions& options) {
-  Mesh mesh = join(read_statements(text, name), name);
+  Mesh mesh = join(read_statements(text, name, options), name);
   complete(mesh, options, name);
   return mesh;
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "ajar/core/error.h"
-#include "loader.h"
+#include "parts.h"
 
 namespace ajar {
 namespace {
@@ -66,7 +66,7 @@ void simple_mesh(Params& p, Shape& shape, Mesh&& mesh, const DMat4& m) {
   shape.mesh = add_mesh(p, std::move(mesh));
 }
 
-void sphere(Params& p, Shape& shape) {
+void sphere(Params& p, Shape& shape, const Part&) {
   const Node* at = find(p, {"center"});
   const DVec3 center = at == nullptr ? DVec3(0) : vector_of(p.loader, *at, 0);
   const double radius = positive(p, "radius", 1);
@@ -86,7 +86,7 @@ void sphere(Params& p, Shape& shape) {
   place_quadric(p, shape, m);
 }
 
-void disk(Params& p, Shape& shape) {
+void disk(Params& p, Shape& shape, const Part&) {
   shape.kind = ShapeKind::disk;
   shape.flip = boolean(p, "flip_normals", false);
   DMat4 m = shape_to_world(p, true);
@@ -96,7 +96,7 @@ void disk(Params& p, Shape& shape) {
   place_quadric(p, shape, m);
 }
 
-void cylinder(Params& p, Shape& shape) {
+void cylinder(Params& p, Shape& shape, const Part&) {
   shape.kind = ShapeKind::cylinder;
   shape.flip = boolean(p, "flip_normals", false);
   const Node *from = find(p, {"p0"}), *to = find(p, {"p1"});
@@ -114,8 +114,10 @@ void cylinder(Params& p, Shape& shape) {
   place_quadric(p, shape, shape_to_world(p, false) * local);
 }
 
-void rectangle(Params& p, Shape& shape) { simple_mesh(p, shape, make_rectangle(), shape_to_world(p, true)); }
-void cube(Params& p, Shape& shape) { simple_mesh(p, shape, make_cube(), shape_to_world(p, false)); }
+void rectangle(Params& p, Shape& shape, const Part&) {
+  simple_mesh(p, shape, make_rectangle(), shape_to_world(p, true));
+}
+void cube(Params& p, Shape& shape, const Part&) { simple_mesh(p, shape, make_cube(), shape_to_world(p, false)); }
 
 // The mesh of the shape that comes next, if an earlier load placed it where it is now.
 bool take_placed(const Loader& loader, const std::string& source, const DMat4& m, Mesh& out) {
@@ -165,19 +167,21 @@ void file_mesh(Params& p, Shape& shape, const std::string& key, MeshOptions opti
   shape.mesh = add_mesh(p, std::move(mesh));
 }
 
-void obj(Params& p, Shape& shape) {
+void obj(Params& p, Shape& shape, const Part& part) {
   const std::string path = file(p, "filename");
   MeshOptions options;
   options.flip_v = true;
-  file_mesh(p, shape, path, options, [&](const MeshOptions& o) { return read_obj(path, o); });
+  options.takes_material = part.takes;
+  file_mesh(p, shape, part.takes ? path + "#" + part.name : path, options,
+            [&](const MeshOptions& o) { return read_obj(path, o); });
 }
 
-void ply(Params& p, Shape& shape) {
+void ply(Params& p, Shape& shape, const Part&) {
   const std::string path = file(p, "filename");
   file_mesh(p, shape, path, {}, [&](const MeshOptions& o) { return read_ply(path, o); });
 }
 
-void serialized(Params& p, Shape& shape) {
+void serialized(Params& p, Shape& shape, const Part&) {
   const std::string path = file(p, "filename");
   const int index = integer(p, "shape_index", 0, 0, 1 << 24);
   file_mesh(p, shape, fmt::format("{}#{}", path, index), {},
@@ -186,23 +190,10 @@ void serialized(Params& p, Shape& shape) {
 
 struct Entry {
   const char* type;
-  void (*read)(Params&, Shape&);
+  void (*read)(Params&, Shape&, const Part&);
 };
 constexpr Entry entries[] = {{"obj", obj}, {"rectangle", rectangle}, {"sphere", sphere}, {"serialized", serialized},
                              {"ply", ply}, {"cube", cube},           {"disk", disk},     {"cylinder", cylinder}};
-
-uint32_t material_of(Params& p, bool emits) {
-  const std::vector<const Node*> bsdfs = nested(p, "bsdf");
-  if (bsdfs.size() > 1) fail(p.loader, p.node, "has more than one bsdf");
-  if (!bsdfs.empty()) return load_bsdf(p.loader, *bsdfs.front());
-  uint32_t& shared = emits ? p.loader.black : p.loader.grey;
-  if (shared == none) {
-    Material m;
-    m.reflectance = Slot(emits ? 0.0f : 0.5f);
-    shared = add_material(p.loader, p.node, m);
-  }
-  return shared;
-}
 
 // Names of the mesh attributes that a slot shows.
 void list_attributes(const Scene& scene, const Slot& slot, std::set<std::string>& out) {
@@ -269,6 +260,34 @@ void load_instance(Loader& loader, const Node& node, uint32_t group) {
   finish(p, {"id"});
 }
 
+void note_empty(Params& p, const Part& part) {
+  if (part.takes && part.name.empty()) return;  // nothing is left for the rest
+  const std::string of = part.takes ? fmt::format(" of usemtl {}", part.name) : "";
+  note(p.loader, p.node, fmt::format("{} has no faces{}: left out", text(p, "filename", ""), of));
+}
+
+void load_part(Params& p, void (*read)(Params&, Shape&, const Part&), const Part& part, uint32_t group) {
+  Loader& loader = p.loader;
+  Shape shape;
+  shape.group = group;
+  shape.name = !p.node.id.empty() ? p.node.id : fmt::format("{}:{}", p.node.type, p.node.line);
+  if (!part.name.empty()) shape.name += ":" + part.name;
+  read(p, shape, part);
+  refuse_media(p);
+  const std::vector<const Node*> emitters = nested(p, "emitter");
+  if (emitters.size() > 1) fail(loader, p.node, "has more than one emitter");
+  if (!emitters.empty() && group != none) fail(loader, p.node, "a light inside a shapegroup is not supported");
+  shape.material = material_of(p, part, !emitters.empty());
+  if (shape.kind == ShapeKind::mesh && loader.scene.meshes[shape.mesh].triangles.empty()) {
+    note_empty(p, part);
+    loader.scene.meshes.pop_back();
+    return;
+  }
+  loader.scene.shapes.push_back(std::move(shape));
+  if (!emitters.empty()) load_emitter(loader, *emitters.front(), uint32_t(loader.scene.shapes.size() - 1));
+  check_attributes(loader, p.node, loader.scene.shapes.back());
+}
+
 }  // namespace
 
 uint32_t load_shape_group(Loader& loader, const Node& node) {
@@ -300,24 +319,8 @@ void load_shape(Loader& loader, const Node& node, uint32_t group) {
       std::find_if(std::begin(entries), std::end(entries), [&](const Entry& e) { return node.type == e.type; });
   if (entry == std::end(entries))
     return unsupported(loader, node, fmt::format("unknown shape; {}", supported), "left out");
-  Shape shape;
-  shape.group = group;
-  shape.name = !node.id.empty() ? node.id : fmt::format("{}:{}", node.type, node.line);
-  entry->read(p, shape);
-  refuse_media(p);
-  const std::vector<const Node*> emitters = nested(p, "emitter");
-  if (emitters.size() > 1) fail(loader, node, "has more than one emitter");
-  if (!emitters.empty() && group != none) fail(loader, node, "a light inside a shapegroup is not supported");
-  shape.material = material_of(p, !emitters.empty());
+  for (const Part& part : parts_of(p)) load_part(p, entry->read, part, group);
   finish(p, {"id", "velocity"});
-  if (shape.kind == ShapeKind::mesh && loader.scene.meshes[shape.mesh].triangles.empty()) {
-    note(loader, node, "has no faces: left out");
-    loader.scene.meshes.pop_back();
-    return;
-  }
-  loader.scene.shapes.push_back(std::move(shape));
-  if (!emitters.empty()) load_emitter(loader, *emitters.front(), uint32_t(loader.scene.shapes.size() - 1));
-  check_attributes(loader, node, loader.scene.shapes.back());
 }
 
 }  // namespace ajar

@@ -153,6 +153,7 @@ Node make_node(Reader& r, const Source& s, const pugi::xml_node& xml) {
       node.written = std::move(value);
     } else if (name == "name") {
       node.name = snake_case(value);
+      node.named = std::move(value);
     } else if (name == "id") {
       node.id = std::move(value);
     } else {
@@ -277,7 +278,7 @@ const std::string* attribute(const Node& node, const char* name) {
 std::string place(const Document& document, const Node& node) {
   std::string element = "<" + node.tag;
   if (!node.written.empty()) element += fmt::format(" type=\"{}\"", node.written);
-  if (!node.name.empty()) element += fmt::format(" name=\"{}\"", node.name);
+  if (!node.named.empty()) element += fmt::format(" name=\"{}\"", node.named);
   if (!node.id.empty()) element += fmt::format(" id=\"{}\"", node.id);
   return fmt::format("{}:{}: {}>", document.files[node.file], node.line, element);
 }

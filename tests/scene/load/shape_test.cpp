@@ -83,7 +83,7 @@ TEST(Shapes, MeshFiles) {
   EXPECT_RGB(normal(s.meshes[0]), 0, 0, -1, 1e-6);
   s = load_inside(shape("obj", file("empty.obj")));
   EXPECT_TRUE(s.shapes.empty());
-  EXPECT_TRUE(says(s.notes, "has no faces"));
+  EXPECT_TRUE(says(s.notes, "empty.obj has no faces: left out"));
   EXPECT_SAYS(error_of(fmt::format("\n{}", shape("obj"))),
               "test.xml:3: <shape type=\"obj\">: needs <string name=\"filename\"");
   EXPECT_SAYS(error_of(shape("ply", file("two words.obj"))), "test.xml:2: <shape type=\"ply\">: ");
@@ -110,6 +110,42 @@ TEST(Shapes, Materials) {
   s = load_inside(shape("sphere", "<bsdf name='bsdf' type='null'/>"));
   EXPECT_EQ(s.materials[s.shapes[0].material].kind, MaterialKind::null);
   EXPECT_SAYS(error_of(shape("sphere", "<bsdf type='null'/><bsdf type='null'/>")), "more than one bsdf");
+}
+
+// halves.obj: two triangles of usemtl "Left One" at x < 0, one of "right" at x > 0.
+TEST(Shapes, BsdfsOfAnObjGoByUsemtl) {
+  const auto named = [](const std::string& name, double grey) {
+    return fmt::format("<bsdf name='{}' type='diffuse'><rgb name='reflectance' value='{}'/></bsdf>", name, grey);
+  };
+  const auto grey = [](const Scene& s, size_t i) { return s.materials[s.shapes[i].material].reflectance.value.x; };
+  const std::string halves = file("halves.obj");
+  Scene s = load_inside(shape("obj", halves + named("right", 0.2) + named("Left One", 0.7) + light));
+  ASSERT_EQ(s.shapes.size(), 2u);
+  EXPECT_EQ(s.meshes[s.shapes[0].mesh].triangles.size(), 1u);
+  EXPECT_FLOAT_EQ(grey(s, 0), 0.2f);
+  EXPECT_GT(s.meshes[s.shapes[0].mesh].positions[1].x, 0);
+  EXPECT_EQ(s.meshes[s.shapes[1].mesh].triangles.size(), 2u);
+  EXPECT_FLOAT_EQ(grey(s, 1), 0.7f);
+  EXPECT_LT(s.meshes[s.shapes[1].mesh].positions[1].x, 0);
+  EXPECT_EQ(s.lights.size(), 2u);
+  EXPECT_EQ(s.lights[s.shapes[1].light].shape, 1u);
+  // the rest: the one without a name, or the default
+  s = load_inside(shape("obj", halves + named("right", 0.2) + "<bsdf type='null'/>"));
+  ASSERT_EQ(s.shapes.size(), 2u);
+  EXPECT_EQ(s.materials[s.shapes[1].material].kind, MaterialKind::null);
+  s = load_inside("<bsdf type='plastic' id='m'/>" +
+                  shape("obj", halves + named("nowhere", 0.2) + "<ref name='right' id='m'/>"));
+  ASSERT_EQ(s.shapes.size(), 2u);
+  EXPECT_EQ(s.materials[s.shapes[0].material].kind, MaterialKind::plastic);
+  EXPECT_FLOAT_EQ(grey(s, 1), 0.5f);
+  EXPECT_EQ(s.meshes[s.shapes[1].mesh].triangles.size(), 2u);
+  EXPECT_TRUE(says(s.notes, "halves.obj has no faces of usemtl nowhere"));
+  // one alone is for all faces
+  s = load_inside(shape("obj", halves + named("right", 0.2)));
+  ASSERT_EQ(s.shapes.size(), 1u);
+  EXPECT_EQ(s.meshes[0].triangles.size(), 3u);
+  EXPECT_SAYS(error_of(shape("obj", halves + "<bsdf type='null'/><bsdf type='null'/>")), "second bsdf without a name");
+  EXPECT_SAYS(error_of(shape("obj", halves + named("a", 0.1) + named("a", 0.2))), "has the name of another bsdf");
 }
 
 TEST(Shapes, Emitters) {
