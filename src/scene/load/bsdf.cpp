@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ajar/scene/bsdf/lobes.h"
 #include "loader.h"
 
 namespace ajar {
@@ -44,12 +45,10 @@ void distribution(Params& p, Material& m) {
     note(p.loader, p.node, fmt::format("the {} distribution is rendered as beckmann of the same roughness", word));
 }
 
+// Microfacets are never smoother than min_alpha.
 Slot roughness(Params& p, const char* name, const Slot& otherwise) {
-  const Slot s = slot(p, {name}, otherwise, Colour::ratio);
-  if (s.texture == none && !(luminance(s.value) > 0))
-    fail(p.loader, p.node,
-         fmt::format("{} should be greater than 0; {} is the plugin without roughness", name,
-                     p.node.type.starts_with("rough") ? p.node.type.substr(5) : p.node.type));
+  Slot s = slot(p, {name}, otherwise, Colour::ratio);
+  if (s.texture == none && !(luminance(s.value) > 0)) s.value = Rgb(min_alpha);
   return s;
 }
 
@@ -149,9 +148,15 @@ void phong(Params& p, Material& m) {
 
 void ward(Params& p, Material& m) {
   two_colours(p, m);
-  m.alpha_u = m.alpha_v = roughness(p, "alpha", 0.1f);
-  m.alpha_u = roughness(p, "alpha_u", m.alpha_u);
-  m.alpha_v = roughness(p, "alpha_v", m.alpha_v);
+  const auto width = [&](const char* name, const Slot& otherwise) {
+    const Slot s = slot(p, {name}, otherwise, Colour::ratio);
+    if (s.texture == none && !(luminance(s.value) > 0))
+      fail(p.loader, p.node, fmt::format("{} should be greater than 0", name));
+    return s;
+  };
+  m.alpha_u = m.alpha_v = width("alpha", 0.1f);
+  m.alpha_u = width("alpha_u", m.alpha_u);
+  m.alpha_v = width("alpha_v", m.alpha_v);
   const std::string variant = choice(p, "variant", "balanced", {"ward", "ward-duer", "balanced"});
   if (variant == "ward") m.ward = WardKind::ward;
   if (variant == "ward-duer") m.ward = WardKind::duer;
@@ -233,7 +238,9 @@ void blend(Params& p, Material& m) {
 
 void mixture(Params& p, Material& m) {
   take_nested(p, m, 1, m.nested.size());
-  const auto weights = to_numbers(text(p, "weights", ""));
+  std::string list = text(p, "weights", "");
+  std::replace(list.begin(), list.end(), ';', ',');
+  const auto weights = to_numbers(list);
   const bool conserve = boolean(p, "ensure_energy_conservation", true);
   const size_t count = size_t(std::count_if(m.nested.begin(), m.nested.end(), [](uint32_t n) { return n != none; }));
   if (!weights || weights->size() != count)
@@ -290,8 +297,10 @@ Slot normals_of_file(Params& p) {
 }
 
 void normalmap(Params& p, Material& m) {
-  m.map = has(p, "filename") ? normals_of_file(p) : main_slot(p, {"normalmap", "map"}, Slot(), Colour::ratio);
-  if (m.map.texture == none) fail(p.loader, p.node, "needs <texture name=\"normalmap\" ...>");
+  const Slot missing(-1.0f);
+  m.map = has(p, "filename") ? normals_of_file(p) : main_slot(p, {"normalmap", "map"}, missing, Colour::ratio);
+  if (m.map.texture == none && m.map.value == missing.value)
+    fail(p.loader, p.node, "needs <texture name=\"normalmap\" ...>");
   take_nested(p, m, 1, 1);
 }
 

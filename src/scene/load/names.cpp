@@ -83,7 +83,9 @@ std::string list(const Table& table) {
 }  // namespace
 
 const Metal* find_metal(const std::string& name) {
-  const auto same = [&](const Metal& m) { return key(m.name) == key(name); };
+  std::string wanted = key(name);
+  if (wanted.ends_with(" palik")) wanted.resize(wanted.size() - 6);
+  const auto same = [&](const Metal& m) { return key(m.name) == wanted; };
   const auto found = std::find_if(std::begin(metals), std::end(metals), same);
   return found == std::end(metals) ? nullptr : found;
 }

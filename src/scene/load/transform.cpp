@@ -23,8 +23,10 @@ DMat4 matrix_of(const Loader& loader, const Node& node) {
 
 DVec3 point_attribute(const Loader& loader, const Node& node, const char* name) {
   const std::string* value = attribute(node, name);
-  const auto list = value == nullptr ? std::nullopt : to_numbers(*value);
-  if (!list || list->size() != 3) fail(loader, node, fmt::format("needs {}=\"x, y, z\"", name));
+  if (value == nullptr) fail(loader, node, fmt::format("needs {}=\"x, y, z\"", name));
+  const auto list = to_numbers(*value);
+  if (!list || list->size() != 3)
+    fail(loader, node, fmt::format("{}=\"{}\" should be three numbers", name, value->substr(0, 80)));
   return {(*list)[0], (*list)[1], (*list)[2]};
 }
 
@@ -35,6 +37,7 @@ DMat4 lookat_of(const Loader& loader, const Node& node) {
   const DVec3 z = glm::normalize(view);
   DVec3 up = std::abs(z.y) < 0.9 ? DVec3(0, 1, 0) : DVec3(0, 0, 1);
   if (attribute(node, "up") != nullptr) up = point_attribute(loader, node, "up");
+  if (!(glm::dot(up, up) > 0)) fail(loader, node, "up is the zero vector");
   const DVec3 left = glm::cross(up, z);
   if (!(glm::dot(left, left) > 1e-16 * glm::dot(up, up))) fail(loader, node, "up points along the line of sight");
   const DVec3 x = glm::normalize(left);
@@ -49,8 +52,10 @@ DMat4 lookat_of(const Loader& loader, const Node& node) {
 DMat4 rotate_of(const Loader& loader, const Node& node) {
   const std::string* axis_words = attribute(node, "axis");
   const DVec3 axis = axis_words != nullptr ? point_attribute(loader, node, "axis") : vector_of(loader, node, 0);
-  if (!(glm::dot(axis, axis) > 0)) fail(loader, node, "needs an axis: x, y, z or value=\"x, y, z\"");
-  return glm::rotate(DMat4(1), glm::radians(number_attribute(loader, node, "angle", 0)), glm::normalize(axis));
+  const double angle = number_attribute(loader, node, "angle", 0);
+  if (glm::dot(axis, axis) > 0) return glm::rotate(DMat4(1), glm::radians(angle), glm::normalize(axis));
+  if (angle != 0) fail(loader, node, "needs an axis: x, y, z or value=\"x, y, z\"");
+  return DMat4(1);
 }
 
 DMat4 step_of(const Loader& loader, const Node& step) {

@@ -52,6 +52,7 @@ TEST(Bsdf, Conductor) {
       bsdf("conductor", "<spectrum name='eta' value='300:1.5, 900:1.5'/><spectrum name='k' value='300:7, 900:7'/>"));
   EXPECT_RGB(m.eta, 1.5, 1.5, 1.5, 1e-5);
   EXPECT_RGB(m.k, 7, 7, 7, 1e-5);
+  EXPECT_RGB(last(bsdf("conductor", word("material", "Au_palik"))).k, 3.983, 2.386, 1.603, 1e-3);
   EXPECT_SAYS(error_of(bsdf("conductor", word("material", "Xx"))), "unknown material \"Xx\"; known are none, a-C, Ag");
   EXPECT_SAYS(error_of(bsdf("conductor", texture("eta"))), "has to be one colour");
 }
@@ -68,8 +69,12 @@ TEST(Bsdf, MicrofacetParameters) {
   m = last(bsdf("roughdielectric", texture("alpha")));
   EXPECT_NE(m.alpha_u.texture, none);
   EXPECT_EQ(m.alpha_v.texture, m.alpha_u.texture);
-  EXPECT_SAYS(error_of(bsdf("roughconductor", number("alpha", 0))), "alpha should be greater than 0; conductor is");
-  EXPECT_SAYS(error_of(bsdf("roughplastic", number("alpha", 0))), "alpha should be greater than 0");
+  for (const char* type : {"roughconductor", "roughdielectric", "roughplastic", "pplastic"})
+    EXPECT_FLOAT_EQ(last(bsdf(type, number("alpha", 0))).alpha_u.value.x, 1e-4f) << type;
+  m = last(bsdf("roughconductor", number("alpha_u", 0) + number("alpha_v", 0.2)));
+  EXPECT_FLOAT_EQ(m.alpha_u.value.x, 1e-4f);
+  EXPECT_FLOAT_EQ(m.alpha_v.value.x, 0.2f);
+  EXPECT_SAYS(error_of(bsdf("ward", number("alpha", 0))), "<bsdf type=\"ward\">: alpha should be greater than 0");
   EXPECT_SAYS(error_of(bsdf("roughconductor", word("distribution", "cosine"))), "known are beckmann, ggx");
   const Scene s = load_inside(bsdf("roughconductor", word("distribution", "phong")));
   EXPECT_EQ(s.materials[0].distribution, Microfacet::beckmann);
@@ -184,6 +189,8 @@ TEST(Bsdf, Mixture) {
   EXPECT_EQ(m.kind, MaterialKind::mixture);
   EXPECT_FLOAT_EQ(m.weights[0], 0.3f);
   EXPECT_FLOAT_EQ(m.weights[1], 0.7f);
+  m = last(bsdf("mixturebsdf", word("weights", "0.3; 0.7") + bsdf("diffuse") + bsdf("plastic")));
+  EXPECT_FLOAT_EQ(m.weights[1], 0.7f);
   const std::string heavy = word("weights", "1, 3") + bsdf("diffuse") + bsdf("plastic");
   const Scene s = load_inside(bsdf("mixturebsdf", heavy));
   EXPECT_FLOAT_EQ(s.materials[2].weights[0], 0.25f);
@@ -210,6 +217,13 @@ TEST(Bsdf, BumpAndNormalMaps) {
   const Texture& t = s.textures[s.materials.back().map.texture];
   EXPECT_FLOAT_EQ(t.to_uv[0][0], 4);
   EXPECT_FLOAT_EQ(s.images[t.image].decode[128], 128 / 255.0f);  // raw
+  for (const char* map :
+       {"<spectrum name='normalmap' type='srgb'><rgb name='color' value='0.5,0.5,1'/></spectrum>",
+        "<texture name='normalmap' type='rawconstant'><vector name='value' value='0.5,0.5,1'/></texture>"}) {
+    m = last(bsdf("normalmap", map + bsdf("diffuse")));
+    EXPECT_EQ(m.map.texture, none);
+    EXPECT_RGB(m.map.value, 0.5, 0.5, 1, 0);
+  }
   EXPECT_SAYS(error_of(bsdf("normalmap", bsdf("diffuse"))), "needs <texture name=\"normalmap\"");
 }
 

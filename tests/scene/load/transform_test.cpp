@@ -69,6 +69,9 @@ TEST(Transform, WrongOnesAreErrors) {
   EXPECT_SAYS(error("<translate x='1e99'/>"), "beyond the range");
   EXPECT_SAYS(error("<scale value='1e30'/><scale value='1e30'/>"), "beyond the range");
   EXPECT_SAYS(error("<rotate angle='5'/>"), "needs an axis");
+  EXPECT_EQ(error("<rotate x='0' y='0' z='0' angle='0'/>"), "");
+  EXPECT_SAYS(error("<lookat origin='nan,0,1' target='0,0,0'/>"), "origin=\"nan,0,1\" should be three numbers");
+  EXPECT_SAYS(error("<lookat origin='0,0,1' target='0,0,0' up='0,0,0'/>"), "up is the zero vector");
   EXPECT_SAYS(error("<lookat origin='0,0,0' target='0,0,0' up='0,1,0'/>"), "the same point");
   EXPECT_SAYS(error("<lookat origin='0,0,0' target='0,2,0' up='0,1,0'/>"), "up points along");
   EXPECT_SAYS(error("<lookat target='0,2,0' up='0,1,0'/>"), "needs origin");
@@ -80,8 +83,7 @@ TEST(Transform, WrongOnesAreErrors) {
 Vec3 moved_at(std::optional<double> time, const std::string& keys, const Vec3& p) {
   LoadOptions options;
   options.time = time;
-  const Scene s =
-      load_inside("<shape type='disk'><animation name='toWorld'>" + keys + "</animation></shape>", options);
+  const Scene s = load_inside("<shape type='disk'><animation name='toWorld'>" + keys + "</animation></shape>", options);
   return Vec3(s.shapes[0].to_world * Vec4(p, 1));
 }
 
@@ -111,8 +113,9 @@ TEST(Animation, TurnsRatherThanSqueezes) {
 TEST(Animation, TellsWhenItsKeysAre) {
   const Scene still = load_inside("<shape type='cube'/>");
   EXPECT_GT(still.hints.first_time, still.hints.last_time);
-  const Scene s = load_inside("<shape type='cube'><animation name='to_world'><transform time='-1'/>"
-                              "<transform time='2.5'/></animation></shape>");
+  const Scene s = load_inside(
+      "<shape type='cube'><animation name='to_world'><transform time='-1'/>"
+      "<transform time='2.5'/></animation></shape>");
   EXPECT_EQ(s.hints.first_time, -1);
   EXPECT_EQ(s.hints.last_time, 2.5);
 }
@@ -141,8 +144,8 @@ TEST(LoadCache, ReadsWhatStaysOnce) {
   const auto load_at = [&](double time, const char* to) {
     options.time = time;
     return load_inside("<shape type='obj'><string name='filename' value='" + file +
-                           "'/><animation name='to_world'><transform time='0'/><transform time='1'><translate x='" + to +
-                           "'/></transform></animation></shape>",
+                           "'/><animation name='to_world'><transform time='0'/><transform time='1'><translate x='" +
+                           to + "'/></transform></animation></shape>",
                        options);
   };
   const Scene first = load_at(0, "1");
