@@ -338,7 +338,8 @@ uint32_t stand_in(Loader& loader, const Node& node) {
   for (const Entry& e : entries) known += (known.empty() ? "" : ", ") + std::string(e.type);
   Params p(loader, node);
   const std::vector<const Node*> inner = nested(p, "bsdf");
-  unsupported(loader, node, "unknown bsdf; supported: " + known,
+  const char* hint = node.type == "mixture" ? ", mixturebsdf today" : "";
+  unsupported(loader, node, fmt::format("unknown bsdf{}; supported: {}", hint, known),
               inner.empty() ? "grey diffuse in its place" : "what is nested in it in its place");
   if (!inner.empty()) return load_bsdf(loader, *inner.front());
   return add_material(loader, node, {});

@@ -45,6 +45,11 @@ bool is_definition(const Node& node) {
   return std::find(std::begin(tags), std::end(tags), node.tag) != std::end(tags);
 }
 
+// What the names of 0.3 and 0.4 became.
+std::string later_name(const std::string& tag) {
+  return tag == "camera" ? ", <sensor> today" : tag == "luminaire" ? ", <emitter> today" : "";
+}
+
 void load_child(Loader& loader, const Node& node, bool& has_sensor, bool& has_integrator) {
   if (node.tag == "bsdf") {
     load_bsdf(loader, node);
@@ -68,7 +73,9 @@ void load_child(Loader& loader, const Node& node, bool& has_sensor, bool& has_in
     // read where it is named
   } else if (node.name.empty() || !node.children.empty()) {
     unsupported(loader, node,
-                "unknown element; supported: integrator, sensor, bsdf, texture, shape, emitter, default, include, path",
+                fmt::format("unknown element{}; supported: integrator, sensor, film, sampler, rfilter, bsdf, texture, "
+                            "spectrum, rgb, srgb, blackbody, shape, emitter, ref, alias, default, include, path",
+                            later_name(node.tag)),
                 "left out");
   }
 }

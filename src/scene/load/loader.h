@@ -92,7 +92,7 @@ int integer(Params& params, const char* name, int otherwise, int low, int high);
 int hint(Params& params, const char* name, int otherwise);
 bool boolean(Params& params, const char* name, bool otherwise);
 std::string text(Params& params, const char* name, const std::string& otherwise);
-/// One of a few words, in any case; an Error lists them.
+/// One of a few words, in any case; an Error lists them, or with --lenient a note.
 std::string choice(Params& params, const char* name, const std::string& otherwise,
                    std::initializer_list<const char*> words);
 /// The file that the string parameter `name` means; an Error where it is missing.
@@ -100,6 +100,8 @@ std::string file(Params& params, const char* name);
 /// Every child of this tag, refs followed, in the order of the file; asks for unnamed and named ones alike.
 std::vector<const Node*> nested(Params& params, std::string_view tag);
 /// Says which children nobody asked for, except those of the list: names that are known to change nothing.
+void note_unused(Params& params, std::initializer_list<const char*> harmless = {});
+/// The same, where elements that no plugin has inside are errors.
 void finish(Params& params, std::initializer_list<const char*> harmless = {});
 
 // transforms, spectra, textures: in files of the same names

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -76,8 +78,8 @@ void transform(Mesh& mesh, const Mat4& to_world) {
 std::string read_bytes(const std::string& path) {
   std::error_code ignored;
   std::ifstream in(path, std::ios::binary);
-  if (!in || std::filesystem::is_directory(path, ignored))
-    throw Error(fmt::format("{}: cannot be read; is the name right, and is it a file?", path));
+  if (!in) throw Error(fmt::format("{}: cannot be read: {}", path, std::strerror(errno)));
+  if (std::filesystem::is_directory(path, ignored)) throw Error(fmt::format("{}: is not a file", path));
   std::string bytes;
   const auto size = std::filesystem::file_size(path, ignored);
   bytes.resize(ignored ? 0 : size);

@@ -43,7 +43,7 @@ const std::string* attribute(const Node& node, const char* name);
 /// "scene.xml:41: <bsdf type="foo">", the beginning of every message about an element.
 std::string place(const Document& document, const Node& node);
 /// The regular file that a name means: as it stands, in the document's folders, with / for \, or beside the file that
-/// holds the element; empty if there is none.
+/// holds the element; or the first that may not be looked at. Empty if there is none.
 std::string find_file(const Document& document, const Node& node, const std::string& name);
 
 }  // namespace ajar

@@ -106,7 +106,7 @@ const Node* find(Params& params, std::initializer_list<const char*> names) {
     const Node& child = params.node.children[i];
     if (std::find(names.begin(), names.end(), child.name) == names.end() || !is_parameter(child)) continue;
     if (found != nullptr)
-      note(params.loader, params.node, fmt::format("\"{}\" is given more than once: the last one counts", child.name));
+      note(params.loader, params.node, fmt::format("\"{}\" is given more than once: the last one counts", child.named));
     found = &child;
     params.used[i] = true;
   }
@@ -167,10 +167,11 @@ std::string choice(Params& params, const char* name, const std::string& otherwis
   const Node* node = find(params, {name});
   if (node == nullptr) return otherwise;
   const std::string value = lower(std::string(trimmed(value_of(params.loader, *node))));
-  if (std::find(words.begin(), words.end(), value) == words.end())
-    fail(params.loader, *node,
-         fmt::format("\"{}\" is unknown here; known are {}", value.substr(0, 80), fmt::join(words, ", ")));
-  return value;
+  if (std::find(words.begin(), words.end(), value) != words.end()) return value;
+  unsupported(params.loader, *node,
+              fmt::format("\"{}\" is unknown here; known are {}", value.substr(0, 80), fmt::join(words, ", ")),
+              otherwise.empty() ? "as if it were not there" : fmt::format("read as {}", otherwise));
+  return otherwise;
 }
 
 std::string file(Params& params, const char* name) {
@@ -197,19 +198,26 @@ std::vector<const Node*> nested(Params& params, std::string_view tag) {
   return list;
 }
 
-void finish(Params& params, std::initializer_list<const char*> harmless) {
+void note_unused(Params& params, std::initializer_list<const char*> harmless) {
   for (size_t i = 0; i < params.node.children.size(); ++i) {
-    if (params.used[i]) continue;
     const Node& child = params.node.children[i];
-    if (!is_parameter(child))
-      unsupported(params.loader, child,
-                  fmt::format("is unknown inside <{} type=\"{}\">", params.node.tag, params.node.written), "left out");
-    else if (std::find(harmless.begin(), harmless.end(), child.name) == harmless.end() &&
-             params.loader.said.insert("unused " + child.tag + " " + child.name).second)
+    if (!params.used[i] && std::find(harmless.begin(), harmless.end(), child.name) == harmless.end() &&
+        params.loader.said.insert("unused " + child.tag + " " + child.name).second)
       note(params.loader, params.node,
            child.name.empty() ? fmt::format("a nested <{}> is not used", child.tag)
-                              : fmt::format("the parameter \"{}\" is not used", child.name));
+                              : fmt::format("the parameter \"{}\" is not used", child.named));
   }
+}
+
+void finish(Params& params, std::initializer_list<const char*> harmless) {
+  for (size_t i = 0; i < params.node.children.size(); ++i) {
+    const Node& child = params.node.children[i];
+    if (params.used[i] || is_parameter(child)) continue;
+    unsupported(params.loader, child,
+                fmt::format("is unknown inside <{} type=\"{}\">", params.node.tag, params.node.written), "left out");
+    params.used[i] = true;
+  }
+  note_unused(params, harmless);
 }
 
 }  // namespace ajar

@@ -60,6 +60,9 @@ void read_film(Loader& loader, const Node& node, Camera& camera) {
   camera.crop_width = integer(p, "crop_width", camera.width - camera.crop_x, 1, camera.width - camera.crop_x);
   camera.crop_height = integer(p, "crop_height", camera.height - camera.crop_y, 1, camera.height - camera.crop_y);
   for (const Node* filter : nested(p, "rfilter")) loader.scene.filter = read_filter(loader, *filter);
+  note_unused(p, {"id", "file_format", "pixel_format", "component_format", "banner", "attach_log", "high_quality_edges",
+                  "gamma", "exposure", "tonemap_method", "key", "burn", "filename", "sample_border", "compensate",
+                  "digits", "variable"});
 }
 
 ViewAxis view_axis(Params& p) {
@@ -148,6 +151,7 @@ void read_sampler(Loader& loader, const Node& node) {
   Params p(loader, node);
   const int count = hint(p, "sample_count", 0);
   if (count > 0) loader.scene.hints.spp = count;
+  note_unused(p, {"id", "seed", "scramble", "dimension", "jitter"});
 }
 
 }  // namespace
@@ -221,8 +225,14 @@ void load_integrator(Loader& loader, const Node& node) {
   std::string type = node.type;
   std::replace(type.begin(), type.end(), '_', '-');
   const auto name = std::find_if(std::begin(names), std::end(names), [&](const Alias& a) { return type == a.theirs; });
-  if (name == std::end(names)) note(loader, node, "Ajar has no integrator of this name: its own default is used");
-  hints.integrator = name == std::end(names) ? node.written : name->ours;
+  if (name == std::end(names)) {
+    hints.integrator = node.written;
+    return note(loader, node, "Ajar has no integrator of this name: its own default is used");
+  }
+  hints.integrator = name->ours;
+  note_unused(p, {"id", "rr_depth", "strict_normals", "samples_per_pass", "timeout", "block_size", "light_image",
+                  "sample_direct", "emitter_samples", "bsdf_samples", "shading_samples", "max_null_collisions",
+                  "granularity", "bruteforce"});
 }
 
 }  // namespace ajar

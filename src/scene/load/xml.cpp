@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <pugixml.hpp>
 #include <set>
 #include <string_view>
@@ -23,7 +21,6 @@ constexpr int max_depth = 64;
 constexpr int max_include_depth = 15;
 constexpr size_t max_nodes = 8'000'000;
 constexpr size_t max_value = 1 << 20;
-constexpr size_t max_text = size_t(1) << 30;
 
 struct Reader {
   Document& document;
@@ -210,7 +207,9 @@ void read_include(Reader& r, const Source& s, const pugi::xml_node& xml, const N
 }
 
 void read_path(Reader& r, const Source& s, const pugi::xml_node& xml, const Node& node) {
-  const fs::path folder = need(r, s, xml, node, "value");
+  const std::string* value = attribute(node, "value");
+  if (value == nullptr) fail(r, s, xml, "needs value=\"...\"");
+  const fs::path folder = value->empty() ? "." : *value;
   std::error_code ignored;
   for (const fs::path& candidate : {fs::path(s.folder) / folder, fs::path(r.document.folders.back()) / folder})
     if (fs::is_directory(candidate, ignored)) {
@@ -242,64 +241,6 @@ void read_children(Reader& r, const Source& s, const pugi::xml_node& xml, Node& 
 }
 
 }  // namespace
-
-std::string snake_case(const std::string& name) {
-  std::string out;
-  const auto upper = [](char c) { return c >= 'A' && c <= 'Z'; };
-  for (size_t i = 0; i < name.size(); ++i) {
-    if (upper(name[i]) && i > 0 && !upper(name[i - 1]) && name[i - 1] != '_' && name[i - 1] != '-') out += '_';
-    out += upper(name[i]) ? char(name[i] - 'A' + 'a') : name[i];
-  }
-  return out;
-}
-
-std::string read_text(const std::string& path) {
-  std::error_code error;
-  if (!fs::exists(path, error)) throw Error(fmt::format("{}: there is no such file", path));
-  if (!fs::is_regular_file(path, error)) throw Error(fmt::format("{}: is not a file", path));
-  if (fs::file_size(path, error) > max_text) throw Error(fmt::format("{}: is larger than 1 GB", path));
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw Error(fmt::format("{}: cannot be opened for reading", path));
-  return std::string(std::istreambuf_iterator<char>(in), {});
-}
-
-std::string one_line(std::string text) {
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < ' ') c = ' ';
-  return text;
-}
-
-const std::string* attribute(const Node& node, const char* name) {
-  for (const auto& [key, value] : node.attributes)
-    if (key == name) return &value;
-  return nullptr;
-}
-
-std::string place(const Document& document, const Node& node) {
-  std::string element = "<" + node.tag;
-  if (!node.written.empty()) element += fmt::format(" type=\"{}\"", node.written);
-  if (!node.named.empty()) element += fmt::format(" name=\"{}\"", node.named);
-  if (!node.id.empty()) element += fmt::format(" id=\"{}\"", node.id);
-  return fmt::format("{}:{}: {}>", document.files[node.file], node.line, element);
-}
-
-std::string find_file(const Document& document, const Node& node, const std::string& name) {
-  if (name.empty() || name.find('\0') != name.npos || name.size() > 4096) return {};
-  std::error_code ignored;
-  const auto look = [&](const std::string& spelt) -> std::string {
-    for (const std::string& folder : document.folders)
-      if (const fs::path path = fs::path(folder) / spelt; fs::is_regular_file(path, ignored)) return path.string();
-    const fs::path beside = fs::path(document.files[node.file]).parent_path() / spelt;
-    return fs::is_regular_file(beside, ignored) ? beside.string() : std::string();
-  };
-  std::string found = look(name);
-  if (found.empty() && name.find('\\') != name.npos) {
-    std::string slashes = name;
-    std::replace(slashes.begin(), slashes.end(), '\\', '/');
-    found = look(slashes);
-  }
-  return found;
-}
 
 Document read_document(const std::string& text, const std::string& folder, const std::string& name,
                        const std::map<std::string, std::string>& defines) {

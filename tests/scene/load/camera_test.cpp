@@ -194,6 +194,28 @@ TEST(Sensors, FirstOfSeveral) {
   EXPECT_SAYS(error("", "irradiancemeter"), "unknown sensor; supported: perspective, thinlens, orthographic");
 }
 
+// Misspelt names are told, as they are spelt; those of Mitsuba that change nothing here are not.
+TEST(Sensors, UnknownParametersAreNoted) {
+  const auto number = [](const char* name) { return std::string("<float name='") + name + "' value='2'/>"; };
+  Scene s = read(film(10, 10, number("gammma") + number("gamma") + "<boolean name='attachLog' value='true'/>") +
+                 "<sampler type='independent'>" + number("sampleCont") + number("seed") + "</sampler>");
+  ASSERT_EQ(s.notes.size(), 4u);  // two of them: no shape, no light
+  EXPECT_TRUE(says(s.notes, "<film type=\"hdrfilm\">: the parameter \"gammma\" is not used"));
+  EXPECT_TRUE(says(s.notes, "<sampler type=\"independent\">: the parameter \"sampleCont\" is not used"));
+  s = load_inside("<integrator type='path'>" + number("maxDepht") + number("rrDepth") + "</integrator>");
+  ASSERT_EQ(s.notes.size(), 3u);
+  EXPECT_TRUE(says(s.notes, "\"maxDepht\" is not used"));
+  EXPECT_EQ(load_inside("<integrator type='theirs'>" + number("own") + "</integrator>").notes.size(), 3u);
+}
+
+TEST(Sensors, UnknownWordsAreNotesWhereLenient) {
+  EXPECT_SAYS(error("<string name='fovAxis' value='up'/>"), "\"up\" is unknown here; known are x, y");
+  const Scene s = read("<float name='fov' value='60'/><string name='fovAxis' value='up'/>", "perspective", lenient());
+  EXPECT_NEAR(fov_x(s), 60, 1e-4);
+  EXPECT_TRUE(says(s.notes, "<string name=\"fovAxis\">: \"up\" is unknown here"));
+  EXPECT_TRUE(says(s.notes, "read as x"));
+}
+
 TEST(Integrators, AreHints) {
   const auto hints = [](const std::string& text) { return load_inside(text).hints; };
   Hints h = hints("<integrator type='path'><integer name='maxDepth' value='7'/></integrator>");

@@ -179,6 +179,8 @@ TEST(Path, AddsAFolder) {
   EXPECT_SAYS(error_of(mesh), "there is no file \"inner.obj\"");
   EXPECT_EQ(load_inside("<path value='folder'/>" + mesh).shapes.size(), 1u);
   EXPECT_TRUE(says(load_inside("<path value='nofolder'/>").notes, "there is no folder nofolder"));
+  EXPECT_EQ(load_inside("<path value=''/>").notes.size(), load_inside("").notes.size());  // the scene's own folder
+  EXPECT_SAYS(error_of("<path/>"), "needs value");
 }
 
 TEST(Xml, NoSceneIsAnError) {
@@ -217,6 +219,26 @@ TEST(Xml, FilesThatAreNoneAreErrors) {
   EXPECT_SAYS(error("nowhere/nothing.xml"), "nowhere/nothing.xml: there is no such file");
   EXPECT_SAYS(error(assets()), "is not a file");
   EXPECT_SAYS(error("/dev/null"), "is not a file");
+  const std::filesystem::path loop = std::filesystem::path(testing::TempDir()) / "loop.xml";
+  std::filesystem::remove(loop);
+  std::filesystem::create_symlink(loop, loop);
+  EXPECT_SAYS(error(loop.string()), "loop.xml: cannot be read: ");
+  std::filesystem::remove(loop);
+}
+
+TEST(Xml, FilesThatMayNotBeReadAreTold) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(testing::TempDir()) / "closed";
+  fs::create_directory(folder);
+  std::ofstream(folder / "a.obj") << "v 0 0 0";
+  fs::permissions(folder, fs::perms::none);
+  const bool open = bool(std::ifstream(folder / "a.obj"));
+  const std::string e =
+      error_of("<shape type='obj'><string name='filename' value='" + (folder / "a.obj").string() + "'/></shape>");
+  fs::permissions(folder, fs::perms::owner_all);
+  fs::remove_all(folder);
+  if (open) GTEST_SKIP() << "this user may read everything";
+  EXPECT_SAYS(e, "a.obj: cannot be read: ");
 }
 
 TEST(Xml, LinesAreCountedFromOne) {
@@ -230,7 +252,9 @@ TEST(Xml, MessagesAreOneLine) {
 }
 
 TEST(Xml, UnknownElementsAreErrorsOrNotes) {
-  EXPECT_SAYS(error_of("<gadget/>"), "<gadget>: unknown element");
+  EXPECT_SAYS(error_of("<gadget/>"), "<gadget>: unknown element; supported: integrator, sensor");
+  EXPECT_SAYS(error_of("<camera type='perspective'/>"), "unknown element, <sensor> today");
+  EXPECT_SAYS(error_of("<bsdf type='mixture'/>"), "unknown bsdf, mixturebsdf today");
   EXPECT_TRUE(says(load_inside("<gadget/>", lenient()).notes, "<gadget>"));
   EXPECT_SAYS(error_of("<bsdf type='diffuse'><hide name='reflectance' value='1'/></bsdf>"), "<hide");
   EXPECT_TRUE(
@@ -239,10 +263,10 @@ TEST(Xml, UnknownElementsAreErrorsOrNotes) {
 
 TEST(Xml, UnusedParametersAreNotedOnce) {
   const Scene s = load_inside(
-      "<shape type='sphere'><boolean name='caustic_receiver' value='true'/></shape>"
-      "<shape type='sphere'><boolean name='caustic_receiver' value='true'/></shape>");
+      "<shape type='sphere'><boolean name='causticReceiver' value='true'/></shape>"
+      "<shape type='sphere'><boolean name='causticReceiver' value='true'/></shape>");
   int count = 0;
-  for (const std::string& note : s.notes) count += note.find("caustic_receiver") != note.npos;
+  for (const std::string& note : s.notes) count += note.find("\"causticReceiver\"") != note.npos;
   EXPECT_EQ(count, 1);
 }
 

@@ -1,0 +1,87 @@
+#include "node.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "ajar/core/error.h"
+
+namespace ajar {
+
+namespace {
+namespace fs = std::filesystem;
+constexpr size_t max_text = size_t(1) << 30;  // far beyond any real scene
+}  // namespace
+
+std::string snake_case(const std::string& name) {
+  std::string out;
+  const auto upper = [](char c) { return c >= 'A' && c <= 'Z'; };
+  for (size_t i = 0; i < name.size(); ++i) {
+    if (upper(name[i]) && i > 0 && !upper(name[i - 1]) && name[i - 1] != '_' && name[i - 1] != '-') out += '_';
+    out += upper(name[i]) ? char(name[i] - 'A' + 'a') : name[i];
+  }
+  return out;
+}
+
+std::string read_text(const std::string& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) throw Error(fmt::format("{}: there is no such file", path));
+  if (status.type() == fs::file_type::none) throw Error(fmt::format("{}: cannot be read: {}", path, error.message()));
+  if (!fs::is_regular_file(path, error)) throw Error(fmt::format("{}: is not a file", path));
+  if (fs::file_size(path, error) > max_text) throw Error(fmt::format("{}: is larger than 1 GB", path));
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw Error(fmt::format("{}: cannot be read: {}", path, std::strerror(errno)));
+  return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+std::string one_line(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+  return text;
+}
+
+const std::string* attribute(const Node& node, const char* name) {
+  for (const auto& [key, value] : node.attributes)
+    if (key == name) return &value;
+  return nullptr;
+}
+
+std::string place(const Document& document, const Node& node) {
+  std::string element = "<" + node.tag;
+  if (!node.written.empty()) element += fmt::format(" type=\"{}\"", node.written);
+  if (!node.named.empty()) element += fmt::format(" name=\"{}\"", node.named);
+  if (!node.id.empty()) element += fmt::format(" id=\"{}\"", node.id);
+  return fmt::format("{}:{}: {}>", document.files[node.file], node.line, element);
+}
+
+std::string find_file(const Document& document, const Node& node, const std::string& name) {
+  if (name.empty() || name.find('\0') != name.npos || name.size() > 4096) return {};
+  std::error_code ignored;
+  const auto look = [&](const std::string& spelt) -> std::string {
+    for (const std::string& folder : document.folders)
+      if (const fs::path path = fs::path(folder) / spelt; fs::is_regular_file(path, ignored)) return path.string();
+    const fs::path beside = fs::path(document.files[node.file]).parent_path() / spelt;
+    return fs::is_regular_file(beside, ignored) ? beside.string() : std::string();
+  };
+  std::string found = look(name);
+  if (found.empty() && name.find('\\') != name.npos) {
+    std::string slashes = name;
+    std::replace(slashes.begin(), slashes.end(), '\\', '/');
+    found = look(slashes);
+  }
+  for (const std::string& folder : document.folders) {  // what may be there, so that reading it tells why not
+    if (!found.empty()) break;
+    std::error_code error;
+    const fs::path path = fs::path(folder) / name;
+    if (!fs::exists(path, error) && error == std::errc::permission_denied) found = path.string();
+  }
+  return found;
+}
+
+}  // namespace ajar
