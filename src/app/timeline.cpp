@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -156,7 +157,9 @@ struct Keyframes {
 
 Keyframes read_keyframes(const std::string& path) {
   std::ifstream in(path);
-  if (!in) throw Error(path + ": cannot be read; is there such a file?");
+  std::error_code none_such;
+  if (!in || std::filesystem::is_directory(path, none_such))
+    throw Error(path + ": cannot be read; is it a file, and there?");
   Json json;
   try {
     json = Json::parse(in);

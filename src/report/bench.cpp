@@ -39,7 +39,8 @@ struct Bench {
 /// A run of an earlier call; nothing where there is none. Throws Error for one that was held against another reference.
 std::optional<Json> find_run(const Bench& bench, const Stand& stand, const Method& method, uint64_t seed) {
   const fs::path path = bench.run_path(stand, method, seed);
-  if (!fs::exists(path)) return {};
+  std::error_code unreadable;
+  if (!fs::exists(path, unreadable)) return {};
   Json file = read_json(path);
   if (!file.is_object() || !file.contains("run") || !file.contains("reference"))
     throw Error(fmt::format("{}: is no run of a bench; delete it", path.string()));
@@ -139,7 +140,8 @@ void make_techniques(Bench& bench, const Stand& stand, const LoadedScene& loaded
   const double amount = (all.cpu_seconds + all.seconds + all.spp) / 10;
   for (const Method& method : bench.suite.methods) {
     const fs::path folder = bench.options.folder / "techniques" / stand.scene->name / method.name;
-    if (fs::exists(folder) || bench.stopped) continue;
+    std::error_code unreadable;
+    if (fs::exists(folder, unreadable) || bench.stopped) continue;
     Racer racer = make_racer(method, *stand.scene, loaded, bench.suite.seeds[0], bench.options.threads);
     racer.options = with_budget(racer.options, with_amount(all, all.spp > 0 ? std::max(amount, 1.0) : amount));
     racer.options.techniques = true;
@@ -254,7 +256,8 @@ void claim_folder(const Bench& bench) {
   const fs::path path = bench.options.folder / "suite.json";
   Json key = to_json(bench.suite);
   key["version"] = bench.options.version;
-  if (fs::exists(path)) {
+  std::error_code unreadable;
+  if (fs::exists(path, unreadable)) {
     if (read_json(path) != key)
       throw Error(fmt::format("{}: holds runs of another suite than {} asks for{}; name another folder with -o",
                               bench.options.folder.string(), bench.suite.path.string(),

@@ -52,7 +52,8 @@ struct Embedder {
   /// Where the file is; throws Error where it is not.
   std::string find(const std::string& name, const std::string& where) const {
     const std::filesystem::path path = dir / name;
-    if (!std::filesystem::is_regular_file(path))
+    std::error_code none_such;
+    if (!std::filesystem::is_regular_file(path, none_such))
       throw Error(
           fmt::format("{}: there is no such file, but {} in {} names it; run the bench again, or take it out there",
                       path.string(), where, (dir / "results.json").string()));
@@ -192,8 +193,10 @@ void write_report(const json& results, const std::filesystem::path& dir) {
 
 json read_results(const std::filesystem::path& dir) {
   const std::filesystem::path path = dir / "results.json";
-  if (!std::filesystem::is_regular_file(path))
-    throw Error(fmt::format("{}: there is no such file; name the folder that ajar bench wrote", path.string()));
+  std::error_code none_such;
+  if (!std::filesystem::is_regular_file(path, none_such))
+    throw Error(fmt::format("{}: {}; name the folder that ajar bench wrote", path.string(),
+                            none_such ? none_such.message() : "is no file"));
   try {
     return json::parse(read_bytes(path));
   } catch (const json::exception& error) {
