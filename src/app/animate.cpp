@@ -100,7 +100,8 @@ std::string frame_key(const Work& w, int frame) {
 // Whether the frame is there as it should be.
 bool is_done(const Work& w, int frame) {
   const std::string path = frame_name(w.pattern, frame);
-  if (!fs::exists(path)) return false;
+  std::error_code unreadable;
+  if (!fs::exists(path, unreadable)) return false;
   const Metadata metadata = read_metadata(path);
   const auto found = metadata.find("ajar:frame");
   if (found != metadata.end() && found->second == decltype(found->second)(frame_key(w, frame))) return true;
@@ -122,7 +123,7 @@ void show(Work& w, int frame, const char* what, const RenderState& state) {
 }
 
 [[noreturn]] void interrupted(int frame) {
-  throw Error(fmt::format("interrupted in frame {}; the same command goes on from there", frame));
+  throw Interrupted{fmt::format("interrupted in frame {}; the same command goes on from there", frame)};
 }
 
 void write_frame(Work& w, int frame, const Stage& stage, Run& run, const RenderState& state) {

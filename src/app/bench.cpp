@@ -61,6 +61,8 @@ std::string command_of(const Arguments& a) {
 
 // The stress suite's cases are scenes that code builds; the program that has them is built with the tests.
 bool is_stress(const std::string& suite) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(suite, error)) return false;  // load_suite says what is wrong
   const nlohmann::json json = nlohmann::json::parse(std::ifstream(suite), nullptr, false);
   return json.is_object() && json.value("cases", nlohmann::json()) == "stress";
 }
@@ -107,10 +109,10 @@ void run_bench_command(const Arguments& a) {
   catch_stop();
   const nlohmann::ordered_json results = run_bench(suite, options);
   line.clear();
-  if (results["interrupted"] && !a.quiet) fmt::print(stderr, "ajar: interrupted; the same command goes on from here\n");
   fmt::print("{}", results_table(results));
   write_report(nlohmann::json(results), options.folder);
   if (!a.quiet) fmt::print("{}\n", (options.folder / "report.html").string());
+  if (results["interrupted"]) throw Interrupted{"interrupted; the same command goes on from here"};
 }
 
 }  // namespace

@@ -1,18 +1,46 @@
-// The command line: subcommands, and one line on stderr with exit code 2 for every error of the user's making.
+// The command line: subcommands; one line on stderr with exit code 2 for every error, or with that of the signal for a
+// command that was interrupted.
+
+#include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <iostream>
 #include <new>
 
 #include "ajar/core/error.h"
 #include "commands.h"
+#include "stop.h"
 #include "version.h"
 
 namespace {
 
-int fail(const std::string& what) {
+int fail(const std::string& what, int code = 2) {
   std::fprintf(stderr, "ajar: %s\n", what.c_str());
-  return 2;
+  return code;
+}
+
+std::string explain(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<CLI::App*> used = app.get_subcommands();
+  if (!used.empty()) return fmt::format("{}; see ajar {} --help", error.what(), used[0]->get_name());
+  std::vector<std::string> known;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    known.push_back(command->get_name());
+  for (const std::string& word : app.remaining())
+    if (!word.starts_with('-'))
+      return fmt::format("{}: there is no such command; known are {}", word, fmt::join(known, ", "));
+  return fmt::format("{}; see ajar --help", error.what());
+}
+
+void parse(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() != 0) throw ajar::Error(explain(app, e));
+    app.exit(e);  // help
+  }
+  if (!std::cout.flush() || std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+    throw ajar::Error("standard output: cannot be written; check where it leads");
 }
 
 }  // namespace
@@ -30,14 +58,13 @@ int main(int argc, char** argv) {
   ajar::add_plan(app);
   ajar::add_report(app);
   try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return app.exit(e);
-    return fail(std::string(e.what()) + "; see ajar --help");
-  } catch (const ajar::Error& e) {
-    return fail(e.what());
+    parse(app, argc, argv);
+  } catch (const ajar::Interrupted& e) {
+    return fail(e.what, ajar::stop_code());
   } catch (const std::bad_alloc&) {
     return fail("out of memory; try a smaller --size");
+  } catch (const std::exception& e) {
+    return fail(e.what());
   }
   return 0;
 }

@@ -33,6 +33,7 @@ void run_plan(const Arguments& a) {
   options.max_depth = a.max_depth != 0 ? a.max_depth : scene.hints.max_depth;
   catch_stop();
   const Plan plan = make_plan(scene, accel, options, [](const RenderState&) { return !stop_asked(); });
+  if (stop_asked()) throw Interrupted{"interrupted in the pilot; nothing is planned"};
   fmt::print("{}", a.json ? to_json(plan).dump(2) + "\n" : describe(plan));
 }
 

@@ -5,10 +5,10 @@
 namespace ajar {
 namespace {
 
-volatile std::sig_atomic_t asked = 0;  // the one thing a signal handler may touch
+volatile std::sig_atomic_t asked = 0;  // the signal; the one thing that its handler may touch
 
 void ask(int signal) {
-  asked = 1;
+  asked = signal;
   std::signal(signal, SIG_DFL);
 }
 
@@ -17,8 +17,10 @@ void ask(int signal) {
 void catch_stop() {
   std::signal(SIGINT, ask);
   std::signal(SIGTERM, ask);
+  if (std::signal(SIGHUP, ask) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
 }
 
 bool stop_asked() { return asked != 0; }
+int stop_code() { return 128 + asked; }
 
 }  // namespace ajar
