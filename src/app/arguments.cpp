@@ -10,6 +10,16 @@
 #include "ajar/core/error.h"
 
 namespace ajar {
+namespace {
+
+// In lower case.
+std::string extension_of(const std::string& path) {
+  std::string out = std::filesystem::path(path).extension().string();
+  std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return out;
+}
+
+}  // namespace
 
 void set_size(Camera& camera, const std::string& text) {
   int w = 0, h = 0, end = 0;
@@ -43,13 +53,9 @@ size_t parse_bytes(const std::string& option, const std::string& text) {
 }
 
 double parse_duration(const std::string& option, const std::string& text) {
-  size_t used = 0;
   double value = -1;
-  try {
-    value = std::stod(text, &used);
-  } catch (const std::exception&) {
-  }
-  const std::string unit = value >= 0 ? text.substr(used) : "";
+  const char* end = text.data() + text.size();
+  const std::string unit(std::from_chars(text.data(), end, value).ptr, end);
   const double factor = unit.empty() || unit == "s" ? 1 : unit == "m" || unit == "min" ? 60 : unit == "h" ? 3600 : 0;
   if (!(value > 0) || factor == 0 || !std::isfinite(value))
     throw Error(fmt::format("{} {}: not a time; write 90s, 5m or 1h", option, text));
@@ -79,15 +85,32 @@ void check_integrator(const std::string& name) {
     throw Error(fmt::format("--integrator {}: unknown; known are {}", name, fmt::join(integrator_names(), ", ")));
 }
 
-void check_writable(const std::string& path) {
-  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
-  if (!std::filesystem::is_directory(folder))
-    throw Error(fmt::format("{}: no such folder; make it first", folder.string()));
+bool is_png(const std::string& path) { return extension_of(path) == ".png"; }
+bool is_exr(const std::string& path) { return extension_of(path) == ".exr"; }
+
+bool is_same_file(const std::string& a, const std::string& b) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const auto place = [&](const std::string& path) { return fs::weakly_canonical(fs::absolute(path, error), error); };
+  const fs::path first = place(a);
+  return a == b || (!first.empty() && first == place(b));
 }
 
-void check_file(const std::string& path) {
-  check_writable(path);
-  if (std::filesystem::is_directory(path)) throw Error(fmt::format("{}: is a folder; name a file in it", path));
+CLI::Validator whole(uint64_t least, uint64_t most) {
+  const auto check = [=](const std::string& text) -> std::string {
+    uint64_t n = 0;
+    const char* end = text.data() + text.size();
+    const auto [rest, failed] = std::from_chars(text.data(), end, n);
+    if (failed == std::errc() && rest == end && n >= least && n <= most) return {};
+    return fmt::format("{} is no whole number from {} to {}", text, least, most);
+  };
+  return CLI::Validator(check, most < 1 << 20 ? fmt::format("{} to {}", least, most) : fmt::format("from {}", least));
+}
+
+void refuse_empty(CLI::App& command) {
+  for (CLI::Option* option : command.get_options([](CLI::Option*) { return true; }))
+    option->check(
+        [](const std::string& text) { return text.empty() ? "is empty; leave it out, or give it a value" : ""; });
 }
 
 }  // namespace ajar

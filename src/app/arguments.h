@@ -2,6 +2,7 @@
 // Leaves: what it means; Error, with the option and a right example, where it means nothing.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <limits>
 #include <string>
 #include <vector>
@@ -31,9 +32,14 @@ inline constexpr int not_given = std::numeric_limits<int>::min();
 bool is_integrator(const std::string& name);
 /// Throws unless there is.
 void check_integrator(const std::string& name);
-/// Throws where the folder of a file that is to be written is missing: before the work rather than after it.
-void check_writable(const std::string& path);
-/// The same for a file that is written as it is named: a folder of that name is in its way.
-void check_file(const std::string& path);
+/// For check(): a whole number in that range; one that no type holds is refused as well.
+CLI::Validator whole(uint64_t least, uint64_t most);
+/// Whether the name ends with .png, in any case.
+bool is_png(const std::string& path);
+bool is_exr(const std::string& path);
+/// Whether both names lead to one file, there or not.
+bool is_same_file(const std::string& a, const std::string& b);
+/// Values that are there but empty are errors: they come of shell variables that nobody set.
+void refuse_empty(CLI::App& command);
 
 }  // namespace ajar

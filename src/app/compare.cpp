@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
 #include <memory>
 
 #include "ajar/core/error.h"
 #include "ajar/report/metrics.h"
+#include "arguments.h"
 #include "commands.h"
 
 namespace ajar {
@@ -33,7 +33,18 @@ Picture read_comparable(const std::string& path, const std::vector<int>& window)
   return picture;
 }
 
+void check_diff(const Arguments& arguments) {
+  if (arguments.diff.empty()) return;
+  if (!is_png(arguments.diff))
+    throw Error(fmt::format("--diff {}: is written as PNG; name a file that ends with .png", arguments.diff));
+  for (const std::string& read : {arguments.image, arguments.reference, arguments.variance})
+    if (!read.empty() && is_same_file(arguments.diff, read))
+      throw Error(fmt::format("--diff {}: is one of the images that are compared; name another file", arguments.diff));
+  check_file(arguments.diff);
+}
+
 void run(const Arguments& arguments) {
+  check_diff(arguments);
   Picture image = read_comparable(arguments.image, arguments.crop);
   const Picture reference = read_comparable(arguments.reference, arguments.crop);
   if (image.width != reference.width || image.height != reference.height)
@@ -49,10 +60,9 @@ void run(const Arguments& arguments) {
     }
     require_comparable(image, arguments.variance);
   }
-  const std::string line = to_json(compare(image, reference)) + "\n";
+  const std::string line = to_json(compare(image, reference));
   if (!arguments.diff.empty()) write_png(arguments.diff, difference_picture(image, reference));
-  if (std::fwrite(line.data(), 1, line.size(), stdout) != line.size() || std::fflush(stdout) != 0)
-    throw Error("standard output: cannot be written; check where it leads");
+  fmt::print("{}\n", line);
 }
 
 }  // namespace

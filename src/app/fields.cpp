@@ -41,7 +41,8 @@ void write_pictures(const Arguments& a, const Scene& scene, const Fields& fields
 void run(const Arguments& a) {
   if (a.scene.empty() && !(a.out.empty() && a.size.empty() && a.defines.empty()))
     throw Error("-o, --size and -D are for pictures, and these need the scene: add --scene SCENE.xml");
-  if (!a.scene.empty() && !std::filesystem::is_directory(a.out))
+  std::error_code error;
+  if (!a.scene.empty() && !std::filesystem::is_directory(a.out, error))
     throw Error(fmt::format("-o {}: no such folder; name one for the pictures", a.out));
   if (a.scene.empty()) {
     fmt::print("{}", describe(load_fields(a.file)));

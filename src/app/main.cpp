@@ -9,6 +9,7 @@
 #include <new>
 
 #include "ajar/core/error.h"
+#include "arguments.h"
 #include "commands.h"
 #include "stop.h"
 #include "version.h"
@@ -57,6 +58,7 @@ int main(int argc, char** argv) {
   ajar::add_fields(app);
   ajar::add_plan(app);
   ajar::add_report(app);
+  for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) ajar::refuse_empty(*command);
   try {
     parse(app, argc, argv);
   } catch (const ajar::Interrupted& e) {

@@ -1,7 +1,11 @@
 #include "outputs.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -30,15 +34,69 @@ Picture with_features(const RenderArguments& a, const Scene& scene, const Accel&
                                                                   {"position", {"P.X", "P.Y", "P.Z"}}};
   std::vector<std::string> wanted;
   bool with_variance = false;
-  for (const std::string& f : a.features) {
-    if (f == "variance")
+  for (auto f = a.features.begin(); f != a.features.end(); ++f) {
+    if (std::find(a.features.begin(), f, *f) != f) continue;  // named twice
+    if (*f == "variance")
       with_variance = true;
     else
-      wanted.insert(wanted.end(), groups.at(f).begin(), groups.at(f).end());
+      wanted.insert(wanted.end(), groups.at(*f).begin(), groups.at(*f).end());
   }
   if (!wanted.empty()) out = append(out, select(render_features(scene, accel, a.seed), wanted));
   if (with_variance) out = append(out, variance(state.film));
   return out;
+}
+
+std::string with_extension(const std::string& path, const char* extension) {
+  return std::filesystem::path(path).replace_extension(extension).string();
+}
+
+void check_name(const RenderArguments& a) {
+  std::error_code error;
+  if (std::filesystem::is_directory(a.out, error))
+    throw Error(fmt::format("-o {}: is a folder; name a file in it, {}", a.out,
+                            (std::filesystem::path(a.out) / "NAME.exr").string()));
+  if (!is_exr(a.out) && !is_png(a.out))
+    throw Error(fmt::format("-o {}: is no name for an image; write NAME.exr, or NAME.png for a tonemapped one", a.out));
+  if (is_png(a.out) && (a.half || !a.features.empty()))
+    throw Error(fmt::format("{}: is for EXR images; write -o NAME.exr, with --png for a PNG beside it",
+                            a.half ? "--half" : "--aov"));
+}
+
+struct Named {
+  std::string option, path;
+};
+
+void add(std::vector<Named>& list, const char* option, const std::string& path) {
+  if (!path.empty()) list.push_back({option, path});
+}
+
+std::vector<Named> written(const RenderArguments& a) {
+  std::vector<Named> out;
+  add(out, "-o", a.out);
+  add(out, "the record", with_extension(a.out, ".json"));
+  if (a.png && !is_png(a.out)) add(out, "--png", with_extension(a.out, ".png"));
+  add(out, "--log", a.log);
+  add(out, "--checkpoint", a.checkpoint);
+  add(out, "--save-fields", a.save_fields);
+  return out;
+}
+
+std::vector<Named> read(const RenderArguments& a) {
+  std::vector<Named> out;
+  add(out, "the scene", a.scene);
+  add(out, "--reference", a.reference);
+  add(out, "--resume", a.resume);
+  add(out, "--load-fields", a.load_fields);
+  return out;
+}
+
+// What goes on may be saved under its old name.
+void require_apart(const Named& output, const Named& other) {
+  if (output.option == "--checkpoint" && other.option == "--resume") return;
+  if (output.option == "--save-fields" && other.option == "--load-fields") return;
+  if (!is_same_file(output.path, other.path)) return;
+  throw Error(fmt::format("{} {}: is the same file as {} {}; name another", output.option, output.path, other.option,
+                          other.path));
 }
 
 }  // namespace
@@ -52,42 +110,90 @@ void Log::write(const RenderState& state, bool last) {
   if (reference) j["error"] = nlohmann::ordered_json::parse(to_json(compare(develop(state.film), *reference)));
   j["phases_cpu"] = phases_json(state.stats.cpu_seconds, state.stats.learn_cpu_seconds, state.stats.ledger);
   add_account(j, state);
-  file << j.dump() << std::endl;
+  errno = 0;
+  if (file << j.dump() << std::endl) return;
+  fault = fmt::format("{}: cannot be written ({}); the log ends there", path, std::strerror(errno));
+  file.close();
 }
 
-Log open_log(const RenderArguments& a, const Film& film) {
-  Log log;
-  if (!a.reference.empty()) {
-    log.reference = select(read_picture(a.reference), {"R", "G", "B"});
-    if (log.reference->width != film.width || log.reference->height != film.height)
-      throw Error(fmt::format("--reference {}: is {}x{}, the render {}x{}; use --size", a.reference,
-                              log.reference->width, log.reference->height, film.width, film.height));
+std::optional<Picture> read_reference(const RenderArguments& a, const Camera& camera) {
+  if (a.reference.empty()) return {};
+  if (a.log.empty()) throw Error("--reference: the error against it goes into the log; add --log FILE");
+  Picture picture = read_picture(a.reference);
+  try {
+    picture = select(picture, {"R", "G", "B"});
+  } catch (const Error& error) {
+    throw Error(fmt::format("--reference {}: {}", a.reference, error.what()));
   }
+  require_comparable(picture, "--reference " + a.reference);
+  if (picture.width != camera.crop_width || picture.height != camera.crop_height)
+    throw Error(fmt::format("--reference {}: is {}x{}, the render {}x{}; use --size", a.reference, picture.width,
+                            picture.height, camera.crop_width, camera.crop_height));
+  return picture;
+}
+
+Log open_log(const RenderArguments& a, std::optional<Picture> reference) {
+  Log log;
+  log.path = a.log;
+  log.reference = std::move(reference);
   if (a.log.empty()) return log;
-  log.file.open(a.log);
-  if (!log.file) throw Error(a.log + ": cannot write the log; is its folder there?");
+  log.file.open(a.log, a.resume.empty() ? std::ios::out : std::ios::app);
+  if (!log.file) throw Error(fmt::format("--log {}: cannot be written ({})", a.log, std::strerror(errno)));
   return log;
 }
 
-void write_record(const RenderArguments& a, const Run& run, const RenderState& state) {
-  write_text(std::filesystem::path(a.out).replace_extension(".json").string(), summary(run, state).dump(2) + "\n");
+void check_outputs(const RenderArguments& a) {
+  check_name(a);
+  const std::vector<Named> outputs = written(a);
+  for (size_t i = 0; i < outputs.size(); ++i) {
+    for (size_t j = 0; j < i; ++j) require_apart(outputs[i], outputs[j]);
+    for (const Named& input : read(a)) require_apart(outputs[i], input);
+  }
+  for (const Named& output : outputs) check_file(output.path);
+  if (!a.techniques.empty()) check_folder(a.techniques);
 }
 
-void write_outputs(const RenderArguments& a, const Scene& scene, const Accel& accel, Run& run,
-                   const RenderState& state) {
+void write_record(const RenderArguments& a, const Run& run, const RenderState& state) {
+  write_text(with_extension(a.out, ".json"), summary(run, state).dump(2) + "\n");
+}
+
+void write_image(const RenderArguments& a, const Scene& scene, const Accel& accel, Run& run, const RenderState& state) {
   const double wall = wall_seconds(), cpu = process_cpu_seconds();
-  const std::filesystem::path out(a.out);
-  const bool only_png = out.extension() == ".png";
-  const std::string png = std::filesystem::path(out).replace_extension(".png").string();
-  if (!only_png) write_exr(a.out, with_features(a, scene, accel, state), metadata(run, state), a.half);
-  if (only_png || a.png) write_png(png, develop(state.film));
-  if (!a.techniques.empty()) write_pyramid(state.pyramid, state.film, a.techniques);
+  const bool png_beside = a.png && !is_png(a.out);
+  if (!is_png(a.out)) write_exr(a.out, with_features(a, scene, accel, state), metadata(run, state), a.half);
+  if (is_png(a.out)) write_png(a.out, develop(state.film));
+  if (png_beside) write_png(with_extension(a.out, ".png"), develop(state.film));
   run.write_seconds = wall_seconds() - wall;
   run.write_cpu = process_cpu_seconds() - cpu;
   write_record(a, run, state);
   if (a.quiet) return;
   fmt::print("{}\n", a.out);
-  if (!only_png && a.png) fmt::print("{}\n", png);
+  if (png_beside) fmt::print("{}\n", with_extension(a.out, ".png"));
+}
+
+void Saver::save(const RenderState& state) {
+  if (path.empty() || state.stats.seconds - saved <= 60) return;
+  saved = state.stats.seconds;
+  try {
+    save_checkpoint(path, key, state);
+  } catch (const Error& error) {
+    const char* clear = isatty(STDERR_FILENO) ? "\r\033[K" : "";  // of the line of progress
+    if (!failed) std::fprintf(stderr, "%sajar: warning: %s; the render goes on\n", clear, error.what());
+    failed = true;
+  }
+}
+
+void write_each(const std::vector<std::function<void()>>& writes) {
+  std::optional<Error> failed;
+  for (const std::function<void()>& write : writes) {
+    try {
+      write();
+    } catch (const std::exception& error) {
+      if (failed) std::fprintf(stderr, "ajar: %s\n", failed->what());
+      failed = Error(error.what());
+    }
+  }
+  if (failed) throw *failed;
 }
 
 }  // namespace ajar

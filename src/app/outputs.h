@@ -1,8 +1,9 @@
-// Enters: a render, running or done.
-// Leaves: what ajar render writes of it: image, record, log.
+// Enters: a render, asked for, running or done.
+// Leaves: what ajar render writes of it: image, record, log; before it, whether that can be written.
 #pragma once
 
 #include <fstream>
+#include <functional>
 #include <optional>
 
 #include "ajar/accel/accel.h"
@@ -14,15 +15,32 @@ namespace ajar {
 
 /// Appends a line to the log whenever time has grown by a tenth since the last one.
 struct Log {
+  std::string path;
   std::ofstream file;
   std::optional<Picture> reference;
+  std::string fault;  ///< of the first line that could not be written; none follow it
   double next = 0.1;
 
   void write(const RenderState& state, bool last);
 };
-Log open_log(const RenderArguments&, const Film&);
+/// The image to measure errors against, if there is to be one; throws Error unless it is fit for that.
+std::optional<Picture> read_reference(const RenderArguments&, const Camera&);
+/// A log that goes on is added to.
+Log open_log(const RenderArguments&, std::optional<Picture> reference);
+/// Throws Error where a name is wrong, or of two things at once, or cannot be written.
+void check_outputs(const RenderArguments&);
 void write_record(const RenderArguments&, const Run&, const RenderState&);
-/// Image, features, techniques and record; prints what it wrote, unless told to be quiet.
-void write_outputs(const RenderArguments&, const Scene&, const Accel&, Run&, const RenderState&);
+/// Image, features and record; prints what it wrote, unless told to be quiet.
+void write_image(const RenderArguments&, const Scene&, const Accel&, Run&, const RenderState&);
+/// Saves the state every minute of rendering. Where that fails the render goes on; it is said once.
+struct Saver {
+  std::string path, key;  ///< no path: nothing is saved
+  double saved = 0;       ///< render seconds
+  bool failed = false;
+
+  void save(const RenderState& state);
+};
+/// Calls all of them: what fails does not keep the rest from being written. Throws the last error, and prints others.
+void write_each(const std::vector<std::function<void()>>& writes);
 
 }  // namespace ajar

@@ -25,8 +25,8 @@ void estimate(Progress& p, const RenderState& state) {
   p.error_next = state.stats.seconds + std::max(1.0, 20 * (wall_seconds() - begin));
 }
 
-void print(const Progress& progress, const RenderOptions& options, const RenderState& state, bool last) {
-  const double share = share_done(options, state, progress), elapsed = state.stats.seconds;
+void print(const Progress& progress, double share, const RenderState& state, bool last) {
+  const double elapsed = state.stats.seconds;
   constexpr int width = 24;
   const int full = int(share * width);
   std::string line = fmt::format("[{:#<{}}{:.<{}}] {:5.1f} spp  {} elapsed", "", full, "", width - full,
@@ -61,13 +61,13 @@ void show(Progress& p, const RenderOptions& options, const RenderState& state) {
   }
   if (now >= p.error_next) estimate(p, state);
   p.last = now;
-  print(p, options, state, false);
+  print(p, share_done(options, state, p), state, false);
 }
 
-void finish(Progress& p, const RenderOptions& options, const RenderState& state) {
+void finish(Progress& p, const RenderOptions& options, const RenderState& state, bool whole) {
   if (!p.shown) return;
   estimate(p, state);
-  print(p, options, state, true);
+  print(p, whole ? 1 : share_done(options, state, p), state, true);
 }
 
 }  // namespace ajar

@@ -21,6 +21,7 @@ struct Progress {
 std::string clock_text(double seconds);
 Progress make_progress(bool quiet);
 void show(Progress& progress, const RenderOptions& options, const RenderState& state);
-void finish(Progress& progress, const RenderOptions& options, const RenderState& state);
+/// whole: it was not interrupted.
+void finish(Progress& progress, const RenderOptions& options, const RenderState& state, bool whole);
 
 }  // namespace ajar

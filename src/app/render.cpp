@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <thread>
 
 #include "ajar/core/error.h"
@@ -26,18 +27,26 @@ void hold_against(const RenderArguments& a, const Scene& scene, const Accel& acc
     fmt::print(stderr, "ajar: note: {} was planned; there is nothing to hold it against\n", a.versus);
     return;
   }
-  run.versus = run_versus(scene, accel, run.options, a.versus, state, [](const RenderState&) { return !stop_asked(); });
+  const Versus versus =
+      run_versus(scene, accel, run.options, a.versus, state, [](const RenderState&) { return !stop_asked(); });
+  if (stop_asked())
+    throw Interrupted{fmt::format("interrupted; {} is whole, but what {} leaves is not known", a.out, a.versus)};
+  run.versus = versus;
   write_record(a, run, state);
   if (!a.quiet) fmt::print("{}\n", describe(run.versus, state));
 }
 
 void plan_run(const RenderArguments& a, Scene& scene, const Accel& accel, Run& run) {
   run.plan = make_plan(scene, accel, run.options, [](const RenderState&) { return !stop_asked(); });
-  run.options.integrator = run.plan.integrator;
-  run.options.learn_lights &= !is_guided(run.plan.integrator);
-  if (!a.quiet) fmt::print(stderr, "ajar: note: {} is used; ajar plan says why\n", run.plan.integrator);
-  if (!is_guided(run.plan.integrator) && !a.save_fields.empty())
+  if (stop_asked()) throw Interrupted{"interrupted in the pilot; nothing was rendered"};
+  const std::string& chosen = run.options.integrator = run.plan.integrator;
+  run.options.learn_lights &= !is_guided(chosen);
+  run.options.techniques &= has_strategies(chosen);
+  if (!a.quiet) fmt::print(stderr, "ajar: note: {} is used; ajar plan says why\n", chosen);
+  if (!is_guided(chosen) && !a.save_fields.empty())
     fmt::print(stderr, "ajar: note: nothing is learned, {} is not written\n", a.save_fields);
+  if (!a.techniques.empty() && !run.options.techniques)
+    fmt::print(stderr, "ajar: note: {} has no strategies to tell apart, {} is not written\n", chosen, a.techniques);
 }
 
 void warn(const RenderState& state) {
@@ -47,10 +56,67 @@ void warn(const RenderState& state) {
   fmt::print(stderr, "\n");
 }
 
+// A state to go on from: new, or what a checkpoint or a file of fields brings.
+RenderState begin(const RenderArguments& a, Scene& scene, const Run& run) {
+  RenderState state = start_render(scene, run.options);
+  if (!a.resume.empty()) {
+    load_checkpoint(a.resume, checkpoint_key(run, state.film), state);
+    if (learns(run.options) && fit_lights(scene.light_tree, learn_options(run.options), state.learning.fields))
+      throw Error(a.resume + ": what it learned of lights is of another scene; start again without --resume");
+    if (run.options.spp > 0 && state.film.passes > run.options.spp && !a.quiet)
+      fmt::print(stderr, "ajar: note: {} holds {} passes, more than --spp {}; they are all in the image\n", a.resume,
+                 state.film.passes, run.options.spp);
+  }
+  if (!a.load_fields.empty() && is_guided(run.options.integrator)) {
+    StoredFields stored = load_fields(a.load_fields, scene_key(scene));
+    fit_lights(scene.light_tree, learn_options(run.options), stored.fields);
+    go_on_from(std::move(stored), learn_options(run.options), state.learning, state.film);
+  }
+  return state;
+}
+
+// The user's time begins after loading: building and the pilot count.
+RenderOptions without_start(RenderOptions options, const Run& run) {
+  if (options.seconds > 0) options.seconds = std::max(options.seconds - run.build_seconds - run.plan.seconds, 1e-3);
+  if (options.cpu_seconds > 0)
+    options.cpu_seconds = std::max(options.cpu_seconds - run.build_cpu - run.plan.cpu_seconds, 1e-3);
+  return options;
+}
+
+void trace(const RenderArguments& a, const Scene& scene, const Accel& accel, Run& run, RenderState& state, Log& log) {
+  RenderOptions budget = run.options;
+  if (!a.versus.empty()) budget.seconds *= 1 - versus_share, budget.cpu_seconds *= 1 - versus_share;
+  Progress progress = make_progress(a.quiet);
+  Saver saver{a.checkpoint, checkpoint_key(run, state.film), state.stats.seconds};
+  render(scene, accel, without_start(budget, run), state, [&](const RenderState& s) {
+    show(progress, budget, s);
+    log.write(s, false);
+    saver.save(s);
+    return !stop_asked();
+  });
+  run.interrupted = stop_asked();
+  finish(progress, budget, state, !run.interrupted);
+  log.write(state, true);
+}
+
+void write_all(const RenderArguments& a, const Scene& scene, const Accel& accel, Run& run, const RenderState& state,
+               const Log& log) {
+  std::vector<std::function<void()>> writes = {[&] { write_image(a, scene, accel, run, state); }};
+  if (!a.checkpoint.empty())
+    writes.emplace_back([&] { save_checkpoint(a.checkpoint, checkpoint_key(run, state.film), state); });
+  if (!a.save_fields.empty() && is_guided(run.options.integrator))
+    writes.emplace_back([&] { save_fields(a.save_fields, stored_fields(scene, state.learning, state.film)); });
+  if (run.options.techniques) writes.emplace_back([&] { write_pyramid(state.pyramid, state.film, a.techniques); });
+  writes.emplace_back([&] {
+    if (!log.fault.empty()) throw Error(log.fault);
+  });
+  write_each(writes);
+}
+
 void run_render(RenderArguments a) {
   const double wall0 = wall_seconds(), cpu0 = process_cpu_seconds();
   if (a.out.empty()) a.out = std::filesystem::path(a.scene).stem().string() + ".exr";
-  check_writable(a.out);
+  check_outputs(a);
   LoadOptions load = load_options(a.defines, a.lenient);
   load.time = a.at;
   Scene scene = load_scene(a.scene, load);
@@ -60,6 +126,7 @@ void run_render(RenderArguments a) {
   run.load_fields = a.load_fields, run.save_fields = a.save_fields;
   run.planned = plans(a, scene);
   run.options = render_options(a, scene, run.planned);
+  std::optional<Picture> reference = read_reference(a, scene.camera);
   for (const std::string& n : scene.notes)
     if (!a.quiet) fmt::print(stderr, "ajar: note: {}\n", n);
   run.threads = a.threads > 0 ? a.threads : int(std::thread::hardware_concurrency());
@@ -73,46 +140,14 @@ void run_render(RenderArguments a) {
   if (run.planned) plan_run(a, scene, accel, run);
   run.light_choice = light_choice_of(a, run.options.integrator);
 
-  RenderState state = start_render(scene, run.options);
-  const std::string key = checkpoint_key(run, state.film);
-  if (!a.resume.empty()) {
-    load_checkpoint(a.resume, key, state);
-    if (learns(run.options) && fit_lights(scene.light_tree, learn_options(run.options), state.learning.fields))
-      throw Error(a.resume + ": what it learned of lights is of another scene; start again without --resume");
-  }
-  if (!a.load_fields.empty() && is_guided(run.options.integrator)) {
-    StoredFields stored = load_fields(a.load_fields, scene_key(scene));
-    fit_lights(scene.light_tree, learn_options(run.options), stored.fields);
-    go_on_from(std::move(stored), learn_options(run.options), state.learning, state.film);
-  }
-  Log log = open_log(a, state.film);
-  Progress progress = make_progress(a.quiet);
-  double saved = state.stats.seconds;
-  RenderOptions budget = run.options;
-  if (!a.versus.empty()) budget.seconds *= 1 - versus_share, budget.cpu_seconds *= 1 - versus_share;
-  RenderOptions options = budget;  // the user's time begins after loading: building and the pilot count
-  if (options.seconds > 0) options.seconds = std::max(options.seconds - run.build_seconds - run.plan.seconds, 1e-3);
-  if (options.cpu_seconds > 0)
-    options.cpu_seconds = std::max(options.cpu_seconds - run.build_cpu - run.plan.cpu_seconds, 1e-3);
-  render(scene, accel, options, state, [&](const RenderState& s) {
-    show(progress, budget, s);
-    log.write(s, false);
-    if (!a.checkpoint.empty() && s.stats.seconds - saved > 60) {
-      saved = s.stats.seconds;
-      save_checkpoint(a.checkpoint, key, s);
-    }
-    return !stop_asked();
-  });
-  run.interrupted = stop_asked();
-  finish(progress, budget, state);
-  log.write(state, true);
-  if (run.interrupted && !a.quiet) fmt::print(stderr, "ajar: interrupted; writing what is there\n");
-  if (!a.checkpoint.empty()) save_checkpoint(a.checkpoint, key, state);
-  if (!a.save_fields.empty() && is_guided(run.options.integrator))
-    save_fields(a.save_fields, stored_fields(scene, state.learning, state.film));
-  write_outputs(a, scene, accel, run, state);
-  if (!a.versus.empty() && !run.interrupted) hold_against(a, scene, accel, run, state);
+  RenderState state = begin(a, scene, run);
+  Log log = open_log(a, std::move(reference));
+  trace(a, scene, accel, run, state, log);
+  write_all(a, scene, accel, run, state, log);
   warn(state);
+  if (run.interrupted)
+    throw Interrupted{fmt::format("interrupted after {:.1f} spp; {} has what was done", spp_of(state.film), a.out)};
+  if (!a.versus.empty()) hold_against(a, scene, accel, run, state);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <span>
 
 #include "ajar/core/error.h"
@@ -12,13 +13,9 @@ namespace ajar {
 namespace {
 
 double parse_noise(const std::string& text) {
-  size_t used = 0;
   double value = 0;
-  try {
-    value = std::stod(text, &used);
-  } catch (const std::exception&) {
-  }
-  if (used != text.size() || !(value > 0) || !std::isfinite(value))
+  const char* end = text.data() + text.size();
+  if (std::from_chars(text.data(), end, value).ptr != end || !(value > 0) || !std::isfinite(value))
     throw Error(fmt::format("--noise {}: not a target; write the relMSE to stop at, above 0, such as 0.01", text));
   return value;
 }
@@ -63,7 +60,6 @@ LearnOptions learn_options(const RenderArguments& a, const std::string& integrat
     throw Error("--guide light: guided-path has no light subpaths; leave it out, or take guided-bdpt");
   if (integrator == "vpl" && a.guide != "both")
     throw Error(fmt::format("--guide {}: vpl guides light subpaths alone; leave it out", a.guide));
-  if (!a.save_fields.empty()) check_file(a.save_fields);
   LearnOptions o;
   o.lights = lights || a.light_choice.empty();
   o.guided = a.guide == "camera" ? Guided::camera : a.guide == "light" ? Guided::light : Guided::both;
@@ -112,16 +108,16 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
   c->add_option("--spp", a->spp,
                 "samples per pixel; of --spp, --time, --cpu-time and --noise the first that is reached ends the render "
                 "(default: the scene's spp, else 64)")
-      ->check(CLI::Range(1, 1 << 30));
+      ->check(whole(1, 1 << 30));
   c->add_option("--time", a->time, "wall time to render: 90s, 5m, 1h");
   c->add_option("--cpu-time", a->cpu_time, "CPU time of all threads to render");
   c->add_option("--noise", a->noise, "relMSE to stop at, as estimated without a reference: 0.01");
-  c->add_option("--seed", a->seed, "another seed, other noise");
-  c->add_option("--threads", a->threads, "threads (default: all)")->check(CLI::Range(1, 4096));
+  c->add_option("--seed", a->seed, "another seed, other noise")->check(whole(0, ~uint64_t(0)));
+  c->add_option("--threads", a->threads, "threads (default: all)")->check(whole(1, 4096));
   c->add_option("--size", a->size, "WIDTHxHEIGHT instead of the scene's; the crop window is dropped");
   c->add_option("--max-depth", a->max_depth, "edges of the longest path; 1 sees lights alone, -1 is unlimited");
   c->add_option("--roulette-depth", a->roulette_depth, "edges of a subpath before Russian roulette begins")
-      ->check(CLI::Range(1, 1 << 20));
+      ->check(whole(1, 1 << 20));
   c->add_option("--heuristic", a->heuristic, "of multiple importance sampling")
       ->check(CLI::IsMember({"power", "balance"}));
   c->add_option("--sampler", a->sampler, "sobol (Owen-scrambled) or independent")
@@ -132,8 +128,10 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
       ->delimiter(',')
       ->check(CLI::IsMember({"albedo", "normal", "position", "variance"}));
   c->add_option("--reference", a->reference, "image to measure the error against in the log");
-  c->add_option("--log", a->log, "JSON lines at log-spaced times");
-  c->add_option("--techniques", a->techniques, "folder for an image of every strategy (s, t), weighted and raw");
+  c->add_option("--log", a->log, "JSON lines at log-spaced times; with --resume they are added");
+  c->add_option(
+      "--techniques", a->techniques,
+      "folder for an image of every strategy (s, t) with s + t <= 11, weighted and raw; those there are removed");
   c->add_option("--checkpoint", a->checkpoint, "file to save the state to, every minute and at the end");
   c->add_option("--resume", a->resume, "checkpoint to go on from");
   c->add_option("--guide", a->guide, "which subpaths the learned fields guide: both, camera or light")
@@ -147,7 +145,7 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
                 "of learning: recent (default: older evidence counts half), visits (1 / (1 + visits))")
       ->check(CLI::IsMember({"recent", "visits"}));
   c->add_option("--train", a->train, "passes that train the fields and are dropped; after them the fields are frozen")
-      ->check(CLI::Range(2, 1 << 20));
+      ->check(whole(2, 1 << 20));
   c->add_option(
        "--light-choice", a->light_choice,
        "of next-event estimation among lights: uniform, power, tree, or learned per cell (default: learned for "
@@ -158,12 +156,13 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
   c->add_option(
        "--final-gather", a->final_gather,
        "of photon: rays from the first surface that bring it indirect light, in place of the light vertices there")
-      ->check(CLI::Range(1, 1024));
+      ->check(whole(1, 1024));
   c->add_flag("--no-next-event", a->no_next_event, "lights are found by hitting them alone: path and guided-path");
   c->add_option("--save-fields", a->save_fields, "file to save the learned fields to");
   c->add_option("--load-fields", a->load_fields, "fields to start from, saved from a render of the same scene");
-  c->add_option("--versus", a->versus,
-                "path, bdpt or light: gets the last tenth of the time, to tell how much error it would have left");
+  c->add_option(
+      "--versus", a->versus,
+      "path, bdpt, light or plain-vpl: gets the last tenth of the time, to tell how much error it would have left");
   c->add_flag("--half", a->half, "16-bit floats in the EXR");
   c->add_flag("--lenient", a->lenient, "leave out what the loader does not know, with a note");
   c->add_flag("-q,--quiet", a->quiet, "no progress, no notes");
@@ -215,7 +214,10 @@ RenderOptions render_options(const RenderArguments& a, Scene& scene, bool planne
     throw Error(fmt::format("--light-choice learned: {} does no next-event estimation; leave it out", o.integrator));
   if (a.light_choice == "uniform" || a.light_choice == "power")
     set_light_choice(scene, a.light_choice == "uniform" ? LightChoice::uniform : LightChoice::power);
-  if (!a.versus.empty() && !planned) check_versus(a.versus, o.integrator);
+  if (!a.versus.empty()) check_versus(a.versus, planned ? "what is planned" : o.integrator);
+  if (o.techniques && !planned && !has_strategies(o.integrator))
+    throw Error(
+        fmt::format("--techniques: {} has no strategies to tell apart; take bdpt or guided-bdpt, say", o.integrator));
   return o;
 }
 

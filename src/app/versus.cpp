@@ -22,7 +22,8 @@ double ratio(const Versus& v, const RenderState& done) {
 
 void check_versus(const std::string& other, const std::string& integrator) {
   std::vector<std::string> fit = integrator_names();
-  std::erase_if(fit, [&](const std::string& name) { return is_guided(name) || name == integrator; });
+  std::erase_if(fit,
+                [&](const std::string& name) { return is_guided(name) || is_merging(name) || name == integrator; });
   if (std::find(fit.begin(), fit.end(), other) == fit.end())
     throw Error(fmt::format("--versus {}: cannot be held against {}; write one of {}", other, integrator,
                             fmt::join(fit, ", ")));
@@ -47,8 +48,9 @@ Versus run_versus(const Scene& scene, const Accel& accel, RenderOptions options,
 
 std::string describe(const Versus& v, const RenderState& done) {
   const double left = estimate_error(done.film).relmse_trimmed;
-  std::string line = fmt::format("error left after {}: relMSE ~ {:.3g} without the worst 0.1 %; ",
-                                 clock_text(done.stats.seconds), left);
+  std::string line = fmt::format("error left after {}: ", clock_text(done.stats.seconds));
+  if (!(left < infinity)) return line + "cannot be known; that takes two passes, and light in them";
+  line += fmt::format("relMSE ~ {:.3g} without the worst 0.1 %; ", left);
   if (!(v.expected.relmse_trimmed < infinity))
     return line + fmt::format("{} had too little time to tell its own", v.integrator);
   return line + fmt::format("{} would have left ~ {:.3g}, {:.2g} times as much (from {} of it)", v.integrator,

@@ -19,7 +19,8 @@ struct Versus {
   ErrorEstimate expected;  ///< after the CPU time of the render that it is held against: error falls as 1 / time
 };
 
-/// Throws Error unless both are known and the other one's error falls as 1 / time: guided ones drop passes.
+/// Throws Error unless both are known and the other one's error falls as 1 / time: guided ones drop passes, and
+/// merging ones are biased. integrator may be none, where it is not known yet.
 void check_versus(const std::string& other, const std::string& integrator);
 /// Renders with the other integrator, all other options alike, for a ninth of the time that the render took. Infinite
 /// errors where that is too short for two passes.

@@ -34,16 +34,20 @@ uint64_t checksum(const void* data, size_t n, uint64_t sum) {
 
 void Writer::bytes(const void* data, size_t n) {
   if (n == 0) return;
-  out.write(static_cast<const char*>(data), std::streamsize(n));
+  out.bytes(data, n);
   sum = checksum(data, n, sum);
 }
 
 Reader::Reader(const std::string& file, const FileKind& file_kind) : path(file), kind(file_kind) {
-  if (!std::filesystem::is_regular_file(path))
-    throw Error(fmt::format("{}: no such {}; {}", path, kind.name, kind.make));
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) {
+    if (!error || error == std::errc::no_such_file_or_directory)
+      throw Error(fmt::format("{}: no such {}; {}", path, kind.name, kind.make));
+    throw Error(fmt::format("{}: this {} cannot be read ({})", path, kind.name, error.message()));
+  }
   in.open(path, std::ios::binary);
   if (!in) throw Error(fmt::format("{}: this {} cannot be read; are you allowed to?", path, kind.name));
-  left = std::filesystem::file_size(path);
+  left = std::filesystem::file_size(path, error);
   char found[magic_size] = {};
   if (left >= magic_size) bytes(found, magic_size);
   if (std::memcmp(found, kind.magic, magic_size) != 0)
@@ -81,22 +85,12 @@ void Reader::finish() {
 }
 
 void write_file(const std::string& path, const FileKind& kind, const std::function<void(Writer&)>& write) {
-  const std::string aside = path + ".tmp";
-  std::error_code failed;
-  {
-    std::ofstream out(aside, std::ios::binary);
-    Writer w{out};
+  write_aside(path, [&](Sink& sink) {
+    Writer w{sink};
     w.bytes(kind.magic, magic_size);
     write(w);
     w.value(uint64_t(w.sum));
-    out.close();
-    if (!out) failed = std::make_error_code(std::errc::io_error);
-  }
-  if (!failed) std::filesystem::rename(aside, path, failed);
-  if (!failed) return;
-  std::error_code ignored;
-  std::filesystem::remove(aside, ignored);
-  throw Error(fmt::format("{}: cannot write the {}; is the folder there and the disk not full?", path, kind.name));
+  });
 }
 
 }  // namespace ajar

@@ -11,7 +11,6 @@
 
 #include "ajar/core/error.h"
 #include "ajar/film/tone.h"
-#include "aside.h"
 
 namespace ajar {
 namespace {

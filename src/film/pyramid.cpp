@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <regex>
+
 namespace ajar {
 namespace {
 
@@ -24,11 +27,26 @@ Picture average(const Film& film, const std::vector<glm::dvec3>& sum) {
   return out;
 }
 
+// Whether write_pyramid gives such names.
+bool is_layer(const std::string& name) {
+  static const std::regex pattern("[sm][0-9]+t[0-9]+(-raw)?\\.exr");
+  return std::regex_match(name, pattern);
+}
+
+void clear_layers(const std::string& folder) {
+  std::error_code ignored;
+  std::vector<std::filesystem::path> old;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+    if (is_layer(entry.path().filename().string())) old.push_back(entry.path());
+  for (const std::filesystem::path& path : old) std::filesystem::remove(path, ignored);
+}
+
 }  // namespace
 
 void merge(Pyramid& pyramid, const Film& film, const std::vector<std::vector<Strategy>>& chunks) {
   for (const auto& chunk : chunks)
     for (const Strategy& c : chunk) {
+      if (std::abs(c.s) + c.t > most_vertices) continue;
       Pyramid::Layer& layer = pyramid.layers[{c.s, c.t}];
       if (layer.raw.empty()) layer.raw.resize(film.pixels()), layer.weighted.resize(film.pixels());
       if (c.t == 1) {
@@ -43,6 +61,7 @@ void merge(Pyramid& pyramid, const Film& film, const std::vector<std::vector<Str
 
 void write_pyramid(const Pyramid& pyramid, const Film& film, const std::string& folder) {
   make_folder(folder);
+  clear_layers(folder);
   for (const auto& [st, layer] : pyramid.layers) {
     const std::string base = fmt::format("{}/{}{}t{}", folder, st.first < 0 ? 'm' : 's', std::abs(st.first), st.second);
     write_exr(base + ".exr", average(film, layer.weighted), {}, false);

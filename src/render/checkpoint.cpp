@@ -7,7 +7,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind checkpoint_kind = {"AJARck10", "checkpoint", "render once with --checkpoint",
+constexpr FileKind checkpoint_kind = {"AJARck11", "checkpoint", "render once with --checkpoint",
                                       "start again without --resume"};
 
 // One list of fields for both ways.
@@ -61,7 +61,7 @@ void save_checkpoint(const std::string& path, const std::string& key, const Rend
     w.text(key);
     film_fields(w, state.film);
     stats_fields(w, state.stats);
-    w.value(uint64_t(state.pyramid.layers.size()));
+    w.value(uint8_t(state.pyramid.kept)), w.value(uint64_t(state.pyramid.layers.size()));
     for (const auto& [st, layer] : state.pyramid.layers)
       w.value(st.first), w.value(st.second), w.array(layer.raw), w.array(layer.weighted);
     w.value(state.pixels_per_light);
@@ -79,7 +79,12 @@ void load_checkpoint(const std::string& path, const std::string& key, RenderStat
   film_fields(r, state.film);
   r.require(is_sound(state.film, pixels));
   stats_fields(r, state.stats);
+  uint8_t kept = 0;
+  r.value(kept);
+  if (state.pyramid.kept && kept == 0)
+    throw Error(path + ": made without --techniques, whose images would lack its passes; leave --techniques out");
   read(r, state.pyramid);
+  if (!state.pyramid.kept) state.pyramid = {};
   r.value(state.pixels_per_light);
   r.require(state.pixels_per_light == RenderState::most_light || state.pixels_per_light == RenderState::least_light);
   read(r, state.learning);

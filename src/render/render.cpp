@@ -242,6 +242,10 @@ bool is_guided(const std::string& integrator) { return find_integrator(integrato
 
 bool learns(const RenderOptions& options) { return is_guided(options.integrator) || options.learn_lights; }
 bool is_merging(const std::string& integrator) { return find_integrator(integrator).merges; }
+bool has_strategies(const std::string& integrator) {
+  const Trace trace = find_integrator(integrator).trace;
+  return trace != trace_path && trace != trace_light;
+}
 
 LearnOptions learn_options(const RenderOptions& options) {
   LearnOptions o = options.learn;
@@ -269,6 +273,7 @@ RenderState start_render(const Scene& scene, const RenderOptions& options) {
   RenderState state;
   const Integrator& integrator = find_integrator(options.integrator);
   state.film = make_film(scene.camera, scene.filter, integrator.splats);
+  state.pyramid.kept = options.techniques;
   if (!learns(options)) return state;
   LearnOptions learn = options.learn;
   if (integrator.vpls && learn.train == 0) learn.train = vpl_training;

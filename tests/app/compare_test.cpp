@@ -99,6 +99,16 @@ TEST_F(Compare, DiffIsAPicture) {
   EXPECT_GT(picture.pixels[0], picture.pixels[2]) << "brighter is red";
 }
 
+TEST_F(Compare, DiffOverwritesNothing) {
+  const std::string png = (folder / "a.png").string();
+  write_png(png, grey(8, 6, 1));
+  EXPECT_NE(error_of({a, b, "--diff", (folder / "d.exr").string()}).find("name a file that ends with .png"),
+            std::string::npos);
+  EXPECT_NE(error_of({png, b, "--diff", (folder / "." / "a.png").string()}).find("is one of the images"),
+            std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder / "d.exr"));
+}
+
 TEST_F(Compare, ErrorsNameBothSizesOrTheFile) {
   write_exr(b, grey(7, 6, 1), {}, false);
   const std::string error = error_of({a, b});

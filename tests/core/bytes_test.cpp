@@ -2,11 +2,14 @@
 #include "ajar/core/bytes.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
 
 #include "ajar/core/error.h"
+#include "kit/files.h"
 
 namespace ajar {
 namespace {
@@ -42,7 +45,6 @@ struct Bytes : testing::Test {
 TEST_F(Bytes, ComeBack) {
   write();
   EXPECT_EQ(read(), (std::vector{3, 1, 4, 1, 5}));
-  EXPECT_FALSE(std::filesystem::exists(path + ".tmp"));
 }
 
 TEST_F(Bytes, AnyChangedBitIsAnError) {
@@ -95,8 +97,33 @@ TEST_F(Bytes, WhatCannotBeWrittenIsAnErrorAndLeavesNothing) {
   EXPECT_THROW(write_file(path + "/no/such", kind, [](Writer&) {}), Error);
   std::filesystem::create_directory(path);
   EXPECT_THROW(write(), Error) << "a folder is in the way";
-  EXPECT_FALSE(std::filesystem::exists(path + ".tmp"));
   EXPECT_THROW(read(), Error);
+}
+
+// A full disk: what is there stays, and the message says why.
+TEST_F(Bytes, TheCauseIsSaidAndTheOldFileStays) {
+  write();
+  rlimit old{};
+  getrlimit(RLIMIT_FSIZE, &old);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{20000, old.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &small);
+  const std::string error =
+      kit::error_of([&] { write_file(path, kind, [](Writer& w) { w.array(std::vector<double>(10000)); }); });
+  setrlimit(RLIMIT_FSIZE, &old);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_NE(error.find("free some space"), std::string::npos) << error;
+  EXPECT_EQ(read(), (std::vector{3, 1, 4, 1, 5}));
+}
+
+TEST_F(Bytes, LinksStayAndLeadToTheNewFile) {
+  const std::string link = path + "link";
+  std::ofstream(path) << "old";
+  std::filesystem::create_symlink(path, link);
+  write_file(link, kind, [](Writer& w) { w.value(1.5); });
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+  EXPECT_NE(kit::bytes_of(path), "old");
+  std::filesystem::remove(link);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // Enters: plain values and arrays.
-// Leaves: a file of their bytes with a checksum, written aside and renamed; and the values back from it, every count
-// checked against the bytes that are left.
+// Leaves: a file of their bytes with a checksum, written aside and renamed (files.h); and the values back from it,
+// every count checked against the bytes that are left.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "ajar/core/files.h"
+
 namespace ajar {
 
 /// Of some bytes after others whose sum is given: any single changed word changes it.
@@ -17,7 +19,7 @@ uint64_t checksum(const void* data, size_t n, uint64_t sum);
 
 /// Bytes in the order of the calls; the same machine, or one of the same byte order, reads them.
 struct Writer {
-  std::ofstream& out;
+  Sink& out;
   uint64_t sum = 0;
 
   void bytes(const void* data, size_t n);
@@ -73,7 +75,7 @@ struct Reader {
   void require(bool holds) const;
 };
 
-/// Calls write; throws Error where the file cannot be written, and then leaves none, and an older one as it was.
+/// Calls write; the file is written as write_aside does. Throws Error.
 void write_file(const std::string& path, const FileKind& kind, const std::function<void(Writer&)>& write);
 
 }  // namespace ajar

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "ajar/core/files.h"
 #include "ajar/core/vec.h"
 
 namespace ajar {
@@ -42,9 +43,5 @@ Metadata read_metadata(const std::string& path);
 Picture select(const Picture& picture, const std::vector<std::string>& names);
 /// The part of width x height pixels whose top left pixel is (x, y); throws Error where it does not lie in the picture.
 Picture crop(const Picture& picture, int x, int y, int width, int height);
-/// Writes text aside and renames. Throws Error.
-void write_text(const std::string& path, const std::string& text);
-/// Makes a folder and those above it; one that is there already will do. Throws Error.
-void make_folder(const std::string& path);
 
 }  // namespace ajar

@@ -17,16 +17,21 @@ struct Strategy {
   Rgb raw{0}, weighted{0};
 };
 
+/// Of the strategies that have an image: paths of ten edges.
+inline constexpr int most_vertices = 11;
+
 struct Pyramid {
   struct Layer {
     std::vector<glm::dvec3> raw, weighted;  ///< sums over passes
   };
+  bool kept = false;  ///< from the first pass on
   std::map<std::pair<int, int>, Layer> layers;
 };
 
-/// Adds the contributions of consecutive chunks in their order.
+/// Adds the contributions of consecutive chunks in their order, but for those of more than most_vertices.
 void merge(Pyramid& pyramid, const Film& film, const std::vector<std::vector<Strategy>>& chunks);
-/// Writes DIR/s1t2.exr ... (weighted) and DIR/s1t2-raw.exr ..., m2t2.exr where merged; the weighted ones add up to the image. Throws Error.
+/// Writes DIR/s1t2.exr ... (weighted) and DIR/s1t2-raw.exr ..., m2t2.exr where merged, in place of all that are there.
+/// The weighted ones add up to the image of paths of so many vertices. Throws Error.
 void write_pyramid(const Pyramid& pyramid, const Film& film, const std::string& folder);
 
 }  // namespace ajar

@@ -29,7 +29,7 @@ struct RenderOptions {
   int final_gather = 0;    ///< of photon: rays that bring indirect light to the first vertex; 0: light vertices there
   LearnOptions learn;      ///< guided integrators, and others that learn lights
   bool learn_lights = false;  ///< path and bdpt: learn which lights cells see (LearnOptions::lights), and nothing else
-  bool techniques = false;    ///< keep an image of every (s, t)
+  bool techniques = false;    ///< keep an image of every (s, t) with s + t <= most_vertices
 };
 
 inline bool has_time_limit(const RenderOptions& o) { return o.seconds > 0 || o.cpu_seconds > 0; }
@@ -47,6 +47,8 @@ bool is_guided(const std::string& integrator);
 bool learns(const RenderOptions& options);
 /// Whether it merges light vertices with camera vertices; throws Error for an unknown integrator.
 bool is_merging(const std::string& integrator);
+/// Whether it tells by which strategy light was found; throws Error for an unknown integrator.
+bool has_strategies(const std::string& integrator);
 /// What its fields are learned with: an integrator without light subpaths guides the camera's alone.
 LearnOptions learn_options(const RenderOptions& options);
 

@@ -46,7 +46,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
 /// Saves the state with a key that names scene and options; written aside and renamed. Throws Error.
 void save_checkpoint(const std::string& path, const std::string& key, const RenderState& state);
 /// Fills a state that start_render made for the same scene and options. Throws Error when the file is damaged, of
-/// another version, or of another key.
+/// another version, of another key, or lacks the images of strategies that the state keeps.
 void load_checkpoint(const std::string& path, const std::string& key, RenderState& state);
 
 /// First-hit features, averaged over a few jittered samples per pixel: "Albedo.R" ..., "N.X" ... (world shading

@@ -1,0 +1,34 @@
+// Enters: bytes, and the name of a file or folder.
+// Leaves: the file, complete or not at all; or, before the work, why it could not be written.
+#pragma once
+
+#include <cstddef>
+#include <cstdio>
+#include <functional>
+#include <string>
+
+namespace ajar {
+
+/// Where bytes go; remembers the first error of the disk and takes nothing after it.
+struct Sink {
+  std::FILE* file;
+  int error = 0;  ///< errno of it; 0: none
+
+  void bytes(const void* data, size_t size);
+};
+
+/// Calls write for a temporary file in the same folder, flushes it to the disk and renames it. A symbolic link stays; a
+/// name that exists and is no regular file (/dev/null, a pipe) is written to as it is. Throws Error that names file,
+/// cause and cure; then no temporary file is left, and a file of that name is as it was.
+void write_aside(const std::string& path, const std::function<void(Sink&)>& write);
+void write_aside(const std::string& path, const void* bytes, size_t size);
+void write_text(const std::string& path, const std::string& text);
+/// Makes a folder and those above it; one that is there already will do. Throws Error.
+void make_folder(const std::string& path);
+
+/// Throws Error where write_aside would: tries it, with a file that it takes away again.
+void check_file(const std::string& path);
+/// Throws Error where files could not be written into the folder, once make_folder has made it; makes nothing.
+void check_folder(const std::string& path);
+
+}  // namespace ajar

@@ -1,0 +1,143 @@
+#include "ajar/core/files.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+#include "ajar/core/error.h"
+
+namespace ajar {
+namespace {
+
+const char* cure(int error) {
+  switch (error) {
+    case ENOENT:
+    case ENOTDIR:
+      return "make the folder first, or name another";
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      return "choose a folder that you may write to";
+    case ENOSPC:
+    case EDQUOT:
+    case EFBIG:
+      return "free some space, or choose another disk";
+    case EISDIR:
+      return "name a file, not a folder";
+    case ENAMETOOLONG:
+      return "choose a shorter name";
+    default:
+      return "check the disk, or choose another folder";
+  }
+}
+
+[[noreturn]] void fail(const std::string& path, int error) {
+  throw Error(fmt::format("{}: cannot be written ({}); {}", path, std::strerror(error), cure(error)));
+}
+
+/// Writes, flushes where asked to, and closes; zero, or the error number.
+int fill(int descriptor, bool flushed, const std::function<void(Sink&)>& write) {
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(::fdopen(descriptor, "wb"), std::fclose);
+  Sink sink{file.get()};
+  write(sink);
+  if (sink.error == 0 && std::fflush(sink.file) != 0) sink.error = errno;
+  if (sink.error == 0 && flushed && ::fsync(descriptor) != 0) sink.error = errno;
+  if (std::fclose(file.release()) != 0 && sink.error == 0) sink.error = errno;
+  return sink.error;
+}
+
+void write_direct(const std::string& path, const std::function<void(Sink&)>& write) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  if (file < 0) fail(path, errno);
+  if (const int error = fill(file, false, write)) fail(path, error);
+}
+
+/// Where a file will be, and the one that is written before it is renamed.
+struct Place {
+  std::string target, aside;
+  bool direct = false;  ///< it is there, and no regular file
+};
+
+Place place_of(const std::string& path) {
+  if (path.empty()) throw Error("the name of the file to write is empty; name a file");
+  struct stat old {};
+  const bool exists = ::stat(path.c_str(), &old) == 0;
+  if (exists && S_ISDIR(old.st_mode)) fail(path, EISDIR);
+  std::error_code ignored;
+  std::string target = exists ? std::filesystem::canonical(path, ignored).string() : path;
+  if (target.empty()) target = path;
+  return {target, fmt::format("{}.tmp{}", target, ::getpid()), exists && !S_ISREG(old.st_mode)};
+}
+
+/// Opens the temporary file.
+int open_aside(const std::string& path, const std::string& aside) {
+  const int file = ::open(aside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (file < 0) fail(path, errno);
+  return file;
+}
+
+void try_out(const std::string& path, const std::string& aside) {
+  ::close(open_aside(path, aside));
+  ::unlink(aside.c_str());
+}
+
+}  // namespace
+
+void Sink::bytes(const void* data, size_t size) {
+  if (error == 0 && std::fwrite(data, 1, size, file) != size) error = errno;
+}
+
+void write_aside(const std::string& path, const std::function<void(Sink&)>& write) {
+  const Place place = place_of(path);
+  if (place.direct) return write_direct(path, write);
+  const int file = open_aside(path, place.aside);
+  int error = 0;
+  try {
+    error = fill(file, true, write);
+  } catch (...) {
+    ::unlink(place.aside.c_str());
+    throw;
+  }
+  if (error == 0 && ::rename(place.aside.c_str(), place.target.c_str()) != 0) error = errno;
+  if (error == 0) return;
+  ::unlink(place.aside.c_str());
+  fail(path, error);
+}
+
+void write_aside(const std::string& path, const void* bytes, size_t size) {
+  write_aside(path, [&](Sink& sink) { sink.bytes(bytes, size); });
+}
+
+void write_text(const std::string& path, const std::string& text) { write_aside(path, text.data(), text.size()); }
+
+void make_folder(const std::string& path) {
+  std::error_code failure;
+  std::filesystem::create_directories(path, failure);
+  if (failure) throw Error(fmt::format("{}: this folder cannot be made ({}); name another", path, failure.message()));
+}
+
+void check_file(const std::string& path) {
+  const Place place = place_of(path);
+  if (place.direct) {
+    if (::access(path.c_str(), W_OK) != 0) fail(path, errno);
+    return;
+  }
+  try_out(path, place.aside);
+}
+
+void check_folder(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  fs::path there = fs::absolute(path, error);
+  while (!fs::exists(there, error) && there.has_relative_path()) there = there.parent_path();
+  if (!fs::is_directory(there, error)) fail(path, ENOTDIR);
+  try_out(path, (there / fmt::format("ajar.tmp{}", ::getpid())).string());
+}
+
+}  // namespace ajar

@@ -1,0 +1,237 @@
+// Where ajar render writes to: names that cannot be are errors before the render, and files are not overwritten by
+// others.
+
+#include "app/outputs.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "app/commands.h"
+#include "kit/files.h"
+
+namespace ajar {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+struct Outputs : testing::Test {
+  fs::path folder, before = fs::current_path();
+
+  void SetUp() override {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder = fs::path(testing::TempDir()) / ("ajar outputs " + std::string(info->name()) + std::to_string(::getpid()));
+    fs::create_directories(folder / "there");
+    for (const char* name : {"box.xml", "room.xml"})
+      fs::copy_file(kit::source_path("scenes/box/" + std::string(name)), folder / name);
+    fs::current_path(folder);
+  }
+  void TearDown() override {
+    fs::current_path(before);
+    fs::remove_all(folder);
+  }
+
+  static void run(Words more) {
+    CLI::App app;
+    add_render(app);
+    more.insert(more.begin(), {"render", "box.xml", "-q", "--size", "8x8"});
+    for (const Words& usual :
+         {Words{"--max-depth", "3"}, Words{"--integrator", "bdpt"}, Words{"--spp", "2"}, Words{"-o", "a.exr"}})
+      if (std::find(more.begin(), more.end(), usual[0]) == more.end())
+        more.insert(more.end(), usual.begin(), usual.end());
+    std::reverse(more.begin(), more.end());
+    app.parse(more);
+  }
+  static std::string error_of(const Words& more) {
+    try {
+      run(more);
+    } catch (const std::exception& e) {
+      return e.what();
+    }
+    return {};
+  }
+  static size_t count(const std::string& path = ".") { return size_t(std::distance(fs::directory_iterator(path), {})); }
+};
+
+TEST_F(Outputs, WrongOnesAreErrorsBeforeTheRender) {
+  struct Case {
+    Words words;
+    std::string says;
+  };
+  const std::vector<Case> cases = {
+      {{"-o", "there"}, "-o there: is a folder; name a file in it, there/NAME.exr"},
+      {{"-o", "there/"}, "is a folder"},
+      {{"-o", "none/a.exr"}, "none/a.exr: cannot be written (No such file or directory)"},
+      {{"-o", "box.xml"}, "-o box.xml: is no name for an image; write NAME.exr"},
+      {{"-o", "a.jpg"}, "no name for an image"},
+      {{"-o", "a.json"}, "no name for an image"},
+      {{"-o", "shot.v1"}, "no name for an image"},
+      {{"-o", ".png"}, "no name for an image"},
+      {{"-o", "-"}, "no name for an image"},
+      {{"--checkpoint", "none/a"}, "none/a: cannot be written"},
+      {{"--checkpoint", "there"}, "there: cannot be written"},
+      {{"--log", "there"}, "there: cannot be written"},
+      {{"--techniques", "box.xml"}, "box.xml: cannot be written"},
+      {{"--checkpoint", "a.exr"}, "--checkpoint a.exr: is the same file as -o a.exr"},
+      {{"--log", "there/../a.json"}, "is the same file as the record a.json"},
+      {{"--png", "--checkpoint", "a.png"}, "is the same file as --png a.png"},
+      {{"--log", "box.xml"}, "is the same file as the scene box.xml"},
+      {{"-o", "a.png", "--half"}, "--half: is for EXR images"},
+      {{"-o", "a.png", "--aov", "normal"}, "--aov: is for EXR images"},
+      {{"--reference", "b.exr"}, "--reference: the error against it goes into the log"},
+      {{"--time", "0x10s"}, "--time 0x10s: not a time"},
+      {{"--seed", "18446744073709551616"}, "18446744073709551616 is no whole number from 0 to 18446744073709551615"},
+      {{"--spp", "0"}, "0 is no whole number from 1"},
+      {{"--integrator", "path", "--techniques", "t"}, "--techniques: path has no strategies"},
+      {{"--integrator", "light", "--techniques", "t"}, "--techniques: light has no strategies"},
+      {{"--plan", "auto", "--integrator", "bdpt"}, "leave out either"},
+  };
+  const std::string scene = kit::bytes_of("box.xml");
+  for (const Case& c : cases) {
+    const std::string said = error_of(c.words);
+    EXPECT_NE(said.find(c.says), std::string::npos) << c.says << ": " << said;
+    EXPECT_EQ(count(), 3u) << c.says;
+  }
+  EXPECT_EQ(kit::bytes_of("box.xml"), scene);
+}
+
+TEST_F(Outputs, AReferenceThatIsNoneIsNamedBeforeTheLogBegins) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  write_exr("nan.exr", {8, 8, {"R", "G", "B"}, std::vector<float>(192, nan)}, {}, false);
+  write_exr("grey.exr", {8, 8, {"Y"}, std::vector<float>(64, 1)}, {}, false);
+  EXPECT_NE(error_of({"--reference", "nan.exr", "--log", "log"}).find("nan.exr: channel R of pixel (0, 0)"),
+            std::string::npos);
+  EXPECT_NE(error_of({"--reference", "grey.exr", "--log", "log"}).find("grey.exr"), std::string::npos);
+  EXPECT_FALSE(fs::exists("log"));
+}
+
+TEST_F(Outputs, TheNameChoosesTheFormatInAnyCase) {
+  run({"-o", "A.PNG"});
+  EXPECT_EQ(kit::bytes_of("A.PNG").substr(1, 3), "PNG");
+  run({"-o", "B.Exr", "--png", "--aov", "normal,normal"});
+  EXPECT_EQ(read_picture("B.Exr").channels(), 6);
+  for (const char* name : {"A.json", "B.json", "B.png"}) EXPECT_TRUE(fs::exists(name)) << name;
+  run({"-o", "shot.v1.exr"});
+  EXPECT_TRUE(fs::exists("shot.v1.json"));
+}
+
+TEST_F(Outputs, ALogGoesOnWithItsRender) {
+  run({"--log", "log", "--checkpoint", "state"});
+  const std::string first = kit::bytes_of("log");
+  ASSERT_FALSE(first.empty());
+  run({"--log", "log", "--spp", "4", "--resume", "state", "--checkpoint", "state"});
+  const std::string both = kit::bytes_of("log");
+  EXPECT_TRUE(both.starts_with(first));
+  EXPECT_GT(both.size(), first.size());
+  run({"--log", "log"});
+  EXPECT_LT(kit::bytes_of("log").size(), both.size()) << "a new render begins a new one";
+}
+
+TEST_F(Outputs, ALogThatCannotBeWrittenIsAnErrorOnceTheImageIsThere) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
+  EXPECT_NE(error_of({"--log", "/dev/full"}).find("/dev/full: cannot be written (No space left on device)"),
+            std::string::npos);
+  EXPECT_TRUE(fs::exists("a.exr"));
+  EXPECT_TRUE(fs::exists("a.json"));
+}
+
+// Images of strategies are of all passes, or they are none.
+TEST_F(Outputs, StrategiesOfAPartAreRefused) {
+  run({"--checkpoint", "plain"});
+  EXPECT_NE(error_of({"--resume", "plain", "--spp", "4", "--techniques", "t"}).find("plain: made without --techniques"),
+            std::string::npos);
+  run({"--spp", "4", "--techniques", "straight"});
+  run({"--techniques", "t", "--checkpoint", "kept"});
+  run({"--resume", "kept", "--spp", "4", "--techniques", "t"});
+  EXPECT_EQ(kit::bytes_of("t/s1t2.exr"), kit::bytes_of("straight/s1t2.exr"));
+  run({"--resume", "kept", "--spp", "4", "--checkpoint", "dropped"});
+  EXPECT_NE(error_of({"--resume", "dropped", "--spp", "6", "--techniques", "t"}).find("made without"),
+            std::string::npos);
+}
+
+TEST_F(Outputs, StrategiesAreOfTheLastRenderAlone) {
+  fs::create_directory("t");
+  for (const char* name : {"t/s9t9.exr", "t/m2t2-raw.exr", "t/mine.exr", "t/s1t2.exr.txt"}) write_text(name, "old");
+  run({"--techniques", "t"});
+  EXPECT_FALSE(fs::exists("t/s9t9.exr"));
+  EXPECT_FALSE(fs::exists("t/m2t2-raw.exr"));
+  EXPECT_TRUE(fs::exists("t/mine.exr"));
+  EXPECT_TRUE(fs::exists("t/s1t2.exr.txt"));
+  EXPECT_TRUE(fs::exists("t/s1t2.exr"));
+}
+
+TEST_F(Outputs, StrategiesOfLongPathsHaveNoImage) {
+  run({"--max-depth", "-1", "--techniques", "t"});
+  int longest = 0;
+  for (const auto& entry : fs::directory_iterator("t")) {
+    int s = 0, t = 0;
+    ASSERT_EQ(std::sscanf(entry.path().filename().c_str(), "s%dt%d", &s, &t), 2);
+    longest = std::max(longest, s + t);
+  }
+  EXPECT_EQ(longest, most_vertices);
+}
+
+TEST_F(Outputs, ResumingWithLessThanThereIsTellsSo) {
+  run({"--spp", "4", "--checkpoint", "state"});
+  CLI::App app;
+  add_render(app);
+  Words words = {"render", "box.xml", "--size", "8x8",   "--max-depth", "3",        "--integrator",
+                 "bdpt",   "-o",      "a.exr",  "--spp", "3",           "--resume", "state"};
+  std::reverse(words.begin(), words.end());
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  app.parse(words);
+  testing::internal::GetCapturedStdout();
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find("note: state holds 4 passes, more than --spp 3"), std::string::npos) << said;
+  EXPECT_NE(said.find("[########################]"), std::string::npos) << "a render that is done is whole: " << said;
+}
+
+TEST_F(Outputs, VersusIsCheckedBeforeAPlannedRender) {
+  for (const char* other : {"nope", "guided-bdpt"}) {
+    CLI::App app;
+    add_render(app);
+    Words words = {"render", "box.xml", "-q", "--plan", "auto", "--versus", other, "-o", "a.exr", "--spp", "1"};
+    std::reverse(words.begin(), words.end());
+    const std::string said = kit::error_of([&] { app.parse(words); });
+    EXPECT_EQ(said.find("--versus " + std::string(other) + ": cannot be held against what is planned"), 0u) << said;
+  }
+  EXPECT_EQ(count(), 3u);
+}
+
+TEST(Versus, OfOnePassNoErrorIsTold) {
+  const std::string line = describe(Versus{.integrator = "bdpt"}, RenderState{});
+  EXPECT_NE(line.find("cannot be known"), std::string::npos) << line;
+  EXPECT_EQ(line.find("inf"), std::string::npos) << line;
+}
+
+TEST_F(Outputs, WhatFailsDoesNotKeepTheRestFromBeingWritten) {
+  testing::internal::CaptureStderr();
+  const std::string thrown = kit::error_of([] {
+    write_each({[] { throw Error("first"); }, [] { write_text("b", "x"); }, [] { throw Error("last"); }});
+  });
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "ajar: first\n");
+  EXPECT_EQ(thrown, "last");
+  EXPECT_TRUE(fs::exists("b"));
+}
+
+TEST_F(Outputs, ASaveThatFailsOnTheWayIsAWarning) {
+  Saver saver{"none/state", "key"};
+  RenderState state;
+  testing::internal::CaptureStderr();
+  for (const double seconds : {59.0, 61.0, 122.0}) state.stats.seconds = seconds, saver.save(state);
+  const std::string said = testing::internal::GetCapturedStderr();
+  const std::string warning = "ajar: warning: none/state: cannot be written";
+  EXPECT_NE(said.find(warning), std::string::npos) << said;
+  EXPECT_EQ(said.find(warning), said.rfind(warning)) << "said twice";
+  EXPECT_EQ(saver.saved, 122);
+  Saver other{"state", "key"};
+  other.save(state);
+  EXPECT_TRUE(fs::exists("state"));
+}
+
+}  // namespace
+}  // namespace ajar

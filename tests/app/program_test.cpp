@@ -1,0 +1,135 @@
+// The program itself: exit codes and what it says on stderr.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "kit/files.h"
+
+namespace ajar {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Program : testing::Test {
+  fs::path folder;
+
+  void SetUp() override {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder = fs::path(testing::TempDir()) / ("ajar program " + std::string(info->name()) + std::to_string(::getpid()));
+    fs::create_directories(folder / "there");
+    fs::permissions(folder, fs::perms::all);
+    for (const char* name : {"box.xml", "room.xml"})
+      fs::copy_file(kit::source_path("scenes/box/" + std::string(name)), folder / name);
+  }
+  void TearDown() override { fs::remove_all(folder); }
+
+  /// Exit code of a line of the shell, in the folder; $ajar is the program.
+  int run(const std::string& line) const {
+    const std::string all =
+        "cd '" + folder.string() + "' && ajar='" AJAR_PROGRAM "' && exec 2>said && rm -f out && { " + line + "; } >out";
+    const int status = std::system(all.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  std::string said() const { return kit::bytes_of(folder / "said"); }
+  bool is_there(const std::string& name) const { return fs::exists(folder / name); }
+};
+
+const std::string small = " --size 8x8 --max-depth 3 -q ";
+// What follows gets a signal once a file is there.
+std::string stopped(const std::string& command, const std::string& file, const std::string& signal) {
+  return command + " & p=$!; while [ ! -s " + file + " ] && kill -0 $p 2>&-; do sleep 0.02; done; kill -" + signal +
+         " $p; wait $p";
+}
+
+TEST_F(Program, InterruptedRendersSaySoAndKeepWhatIsDone) {
+  const std::string endless = "\"$ajar\" render box.xml --integrator path --spp 1000000000 --log log -o a.exr" + small;
+  for (const auto& [signal, code] : {std::pair{"INT", 130}, {"TERM", 143}, {"HUP", 129}}) {
+    for (const char* old : {"a.exr", "log"}) fs::remove(folder / old);
+    EXPECT_EQ(run(stopped(endless, "log", signal)), code) << said();
+    EXPECT_TRUE(is_there("a.exr")) << signal;
+    EXPECT_TRUE(is_there("a.json")) << signal;
+    EXPECT_NE(said().find("ajar: interrupted after "), std::string::npos) << said();
+  }
+}
+
+TEST_F(Program, NohupHoldsOffTheEndOfTheTerminal) {
+  const std::string render = "\"$ajar\" render box.xml --integrator path --time 1s --log log -o a.exr" + small;
+  EXPECT_EQ(run("trap '' HUP; " + stopped(render, "log", "HUP")), 0) << said();
+}
+
+TEST_F(Program, InterruptedBenchesGoOn) {
+  std::ofstream(folder / "s.json") << R"({"title": "t", "seeds": 1, "budget": {"spp": 100000000}, "baseline": "b",
+    "methods": [{"name": "b", "integrator": "path"}], "scenes": [{"name": "s", "file": "box.xml", "size": [8, 8],
+    "reference": {"made_by": [{"integrator": "bdpt", "spp": 100000000}, {"integrator": "path", "spp": 100000000}]}}]})";
+  EXPECT_EQ(run(stopped("\"$ajar\" bench s.json -q -o b", "b/suite.json", "TERM")), 143) << said();
+  EXPECT_NE(said().find("ajar: interrupted; the same command goes on"), std::string::npos) << said();
+}
+
+TEST_F(Program, InterruptedPilotsPlanNothing) {
+  const auto after_a_while = [](const std::string& command) {
+    return command + " & p=$!; sleep 0.7; kill -TERM $p; wait $p";
+  };
+  EXPECT_EQ(run(after_a_while("\"$ajar\" plan box.xml --cpu-time 10h")), 143) << said();
+  EXPECT_EQ(kit::bytes_of(folder / "out"), "");
+  EXPECT_EQ(run(after_a_while("\"$ajar\" render box.xml --plan auto --cpu-time 10h -q -o a.exr")), 143) << said();
+  EXPECT_FALSE(is_there("a.exr"));
+  EXPECT_EQ(run(after_a_while("\"$ajar\" animate box.xml --frames 2 --spp 100000000 -q -o f/f_%d.exr")), 143) << said();
+}
+
+TEST_F(Program, WordsThatAreNoCommandAreNamed) {
+  EXPECT_EQ(run("\"$ajar\" rendr box.xml"), 2);
+  EXPECT_EQ(said().find("ajar: rendr: there is no such command; known are render, "), 0u) << said();
+  EXPECT_EQ(run("\"$ajar\" render --nope box.xml"), 2);
+  EXPECT_NE(said().find("; see ajar render --help\n"), std::string::npos) << said();
+  EXPECT_EQ(run("\"$ajar\""), 2);
+  EXPECT_NE(said().find("; see ajar --help\n"), std::string::npos) << said();
+}
+
+TEST_F(Program, EmptyValuesAreErrors) {
+  for (const char* words :
+       {"render box.xml -o ''", "render box.xml --plan ''", "plan box.xml --cpu-time ''", "animate box.xml -o ''"}) {
+    EXPECT_EQ(run("\"$ajar\" " + std::string(words)), 2) << words;
+    EXPECT_NE(said().find("is empty; leave it out"), std::string::npos) << words << ": " << said();
+  }
+}
+
+TEST_F(Program, AFullStandardOutputIsAnError) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
+  for (const char* words : {"--help", "render --help", "plan box.xml --cpu-time 1s --size 8x8"}) {
+    EXPECT_EQ(run("\"$ajar\" " + std::string(words) + " >/dev/full"), 2) << words;
+    EXPECT_EQ(said().find("ajar: "), 0u) << said();
+  }
+}
+
+// Whatever lies in the way: a line that begins with the program's name, and no abort.
+TEST_F(Program, FoldersThatMayNotBeReadAreErrors) {
+  const std::string nobody = ::geteuid() == 0 ? "setpriv --reuid=65534 --regid=65534 --clear-groups " : "";
+  const std::string program = nobody + "\"$ajar\" ";
+  if (run(program + "--version") != 0) GTEST_SKIP() << "nobody may run the program: " << said();
+  fs::create_directories(folder / "secret/deep");
+  fs::permissions(folder / "secret", fs::perms::none);
+  std::ofstream(folder / "s.json") << R"({"title": "t", "seeds": 1, "budget": {"spp": 1}, "baseline": "b",
+    "methods": [{"name": "b", "integrator": "path"}], "scenes": [{"name": "s", "file": "box.xml", "size": [8, 8],
+    "reference": {"made_by": [{"integrator": "bdpt", "spp": 96}, {"integrator": "path", "spp": 96}]}}]})";
+  const std::string render = "render box.xml --spp 1 --integrator guided-bdpt" + small;
+  for (const std::string& words :
+       {render + "-o secret/deep/a.exr", render + "-o a.exr --save-fields secret/x/f",
+        render + "-o a.exr --resume secret/s", render + "-o a.exr --load-fields secret/s",
+        render + "-o a.exr --techniques secret/t", std::string("fields secret/learned"), std::string("report secret"),
+        std::string("bench s.json -q -o secret/b"), std::string("bench there -o b"),
+        std::string("animate box.xml --frames 2 --keyframes there -o f/f_%d.exr"),
+        std::string("animate box.xml --frames 2 --spp 1 -o secret/x/f_%d.exr")}) {
+    EXPECT_EQ(run(program + words), 2) << words << ": " << said();
+    EXPECT_EQ(said().find("ajar: "), 0u) << words << ": " << said();
+    EXPECT_FALSE(is_there("a.exr")) << words;
+  }
+  fs::permissions(folder / "secret", fs::perms::owner_all);
+}
+
+}  // namespace
+}  // namespace ajar

@@ -1,0 +1,76 @@
+// Files that are written aside: whether they can be is known before, and leaves no trace.
+#include "ajar/core/files.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "kit/files.h"
+
+namespace ajar {
+namespace {
+
+namespace fs = std::filesystem;
+using kit::error_of;
+
+struct Files : testing::Test {
+  fs::path folder = fs::path(testing::TempDir()) / ("ajar_files" + std::to_string(::getpid()));
+  void SetUp() override { fs::create_directories(folder); }
+  void TearDown() override { fs::remove_all(folder); }
+
+  std::string file(const std::string& name) const { return (folder / name).string(); }
+  size_t count() const { return size_t(std::distance(fs::directory_iterator(folder), {})); }
+  static std::string checked(const std::string& path) {
+    return error_of([&] { check_file(path); });
+  }
+};
+
+TEST_F(Files, TryingLeavesThingsAsTheyWere) {
+  write_text(file("a"), "old");
+  EXPECT_EQ(checked(file("a")), "");
+  EXPECT_EQ(checked(file("b")), "");
+  EXPECT_EQ(kit::bytes_of(file("a")), "old");
+  EXPECT_EQ(count(), 1u);
+}
+
+TEST_F(Files, WhatCannotBeWrittenIsKnownBefore) {
+  EXPECT_NE(checked(file("none/a")).find("make the folder"), std::string::npos);
+  EXPECT_NE(checked(folder.string()).find("name a file"), std::string::npos);
+  EXPECT_NE(checked(file("")).find("name a file"), std::string::npos);
+  EXPECT_NE(checked(file(std::string(300, 'a'))).find("shorter name"), std::string::npos);
+  EXPECT_NE(checked("").find("empty"), std::string::npos);
+  // Of a file system that nobody writes to, not even root.
+  EXPECT_NE(checked("/proc/ajar"), "");
+  EXPECT_EQ(count(), 0u);
+}
+
+TEST_F(Files, PipesAreNoFilesToTry) {
+  ASSERT_EQ(::mkfifo(file("pipe").c_str(), 0600), 0);
+  EXPECT_EQ(checked(file("pipe")), "");
+  EXPECT_TRUE(fs::is_fifo(file("pipe")));
+}
+
+TEST_F(Files, FoldersAreTriedWhereTheyWillBe) {
+  const auto said = [&](const std::string& path) { return error_of([&] { check_folder(path); }); };
+  EXPECT_EQ(said(folder.string()), "");
+  EXPECT_EQ(said(file("a/b/")), "");
+  EXPECT_EQ(count(), 0u);
+  write_text(file("text"), "");
+  EXPECT_NE(said(file("text")).find("cannot be written"), std::string::npos);
+  EXPECT_NE(said(file("text/a")).find("cannot be written"), std::string::npos);
+  EXPECT_NE(said("/proc/ajar/b"), "");
+}
+
+TEST_F(Files, WhoCannotSayWhatToWriteWritesNothing) {
+  write_text(file("a"), "old");
+  EXPECT_THROW(write_aside(file("a"), [](Sink&) { throw std::runtime_error("no"); }), std::runtime_error);
+  EXPECT_EQ(kit::bytes_of(file("a")), "old");
+  EXPECT_EQ(count(), 1u);
+}
+
+}  // namespace
+}  // namespace ajar
