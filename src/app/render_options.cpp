@@ -90,6 +90,26 @@ std::vector<std::string> split(const std::string& list) {
   return out;
 }
 
+bool lists_parts(const std::string& plan) { return !plan.empty() && plan != "all" && plan != "auto"; }
+
+// What the user names, else what the plan's parts make, else what the scene names.
+void choose_integrator(const RenderArguments& a, Scene& scene, RenderOptions& o) {
+  if (!a.integrator.empty()) {
+    check_integrator(a.integrator);
+    o.integrator = a.integrator;
+  } else if (lists_parts(a.plan)) {
+    if (a.guide != "both") throw Error("--guide: the parts of --plan say what is guided; leave it out");
+    apply_parts(split(a.plan), o);
+  } else if (a.plan == "all") {
+    o.integrator = "guided-bdpt";
+  } else if (is_integrator(scene.hints.integrator)) {
+    o.integrator = scene.hints.integrator;
+  } else if (!scene.hints.integrator.empty()) {
+    scene.notes.push_back(fmt::format("{}: integrator {} is not in this version; {} is used", a.scene,
+                                      scene.hints.integrator, o.integrator));
+  }
+}
+
 }  // namespace
 
 void add_options(CLI::App& command, RenderArguments& arguments) {
@@ -183,14 +203,7 @@ std::string light_choice_of(const RenderArguments& a, const std::string& integra
 
 RenderOptions render_options(const RenderArguments& a, Scene& scene, bool planned) {
   RenderOptions o;
-  if (!a.integrator.empty()) check_integrator(a.integrator);
-  if (!a.integrator.empty())
-    o.integrator = a.integrator;
-  else if (is_integrator(scene.hints.integrator))
-    o.integrator = scene.hints.integrator;
-  else if (!scene.hints.integrator.empty())
-    scene.notes.push_back(fmt::format("{}: integrator {} is not in this version; {} is used", a.scene,
-                                      scene.hints.integrator, o.integrator));
+  choose_integrator(a, scene, o);
   if (a.noise) o.noise = parse_noise(*a.noise);
   set_limits(a.time, a.cpu_time, a.spp, scene, o);
   o.seed = a.seed;
@@ -206,9 +219,9 @@ RenderOptions render_options(const RenderArguments& a, Scene& scene, bool planne
   if (o.final_gather > 0 && o.integrator != "photon")
     throw Error(fmt::format("--final-gather: {} has no photon map to gather from; take photon", o.integrator));
   check_next_event(o, scene);
-  if (a.plan == "all") o.integrator = "guided-bdpt";
+  const Guided guided = o.learn.guided;
   o.learn = learn_options(a, o.integrator, planned || is_guided(o.integrator));
-  if (!a.plan.empty() && a.plan != "all" && a.plan != "auto") apply_parts(split(a.plan), o);
+  if (lists_parts(a.plan)) o.learn.guided = guided;
   o.learn_lights = a.light_choice == "learned" && !is_guided(o.integrator);
   if (o.learn_lights && o.integrator != "path" && o.integrator != "bdpt")
     throw Error(fmt::format("--light-choice learned: {} does no next-event estimation; leave it out", o.integrator));

@@ -202,6 +202,26 @@ TEST_F(Outputs, VersusIsCheckedBeforeAPlannedRender) {
   EXPECT_EQ(count(), 3u);
 }
 
+// What a list of parts makes is checked as if it had been named.
+TEST_F(Outputs, PartsOfAPlanAreCheckedAsAnIntegratorIs) {
+  const auto said = [](Words words) {
+    CLI::App app;
+    add_render(app);
+    words.insert(words.begin(), {"render", "box.xml", "-q", "--size", "8x8", "--spp", "2", "-o", "a.exr"});
+    std::reverse(words.begin(), words.end());
+    return kit::error_of([&] { app.parse(words); });
+  };
+  EXPECT_NE(said({"--plan", "light-subpaths", "--no-next-event"}).find("bdpt needs it"), std::string::npos);
+  EXPECT_NE(said({"--plan", "none", "--save-fields", "f"}).find("path learns no fields"), std::string::npos);
+  EXPECT_NE(said({"--plan", "light-subpaths", "--final-gather", "4"}).find("--final-gather: bdpt"), std::string::npos);
+  EXPECT_NE(said({"--plan", "none", "--guide", "light"}).find("--guide: the parts"), std::string::npos);
+  EXPECT_EQ(count(), 3u);
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(said({"--plan", "light-subpaths,camera-guiding", "--save-fields", "f"}), "");
+  testing::internal::GetCapturedStdout();
+  EXPECT_TRUE(fs::exists("f"));
+}
+
 TEST(Versus, OfOnePassNoErrorIsTold) {
   const std::string line = describe(Versus{.integrator = "bdpt"}, RenderState{});
   EXPECT_NE(line.find("cannot be known"), std::string::npos) << line;
