@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "ajar/core/bytes.h"
 #include "ajar/core/error.h"
 #include "arguments.h"
 #include "commands.h"
@@ -66,8 +67,9 @@ struct Work {
   std::string folder;
   RenderOptions options;
   SequenceOptions sequence;
-  std::string key;       // of the whole animation, without budgets
-  bool carries = false;  // fields
+  std::string options_key;  // of the whole animation, without budgets
+  std::string key;          // the same with the files of its first frame
+  bool carries = false;     // fields
   std::optional<Carried> carried;
   std::vector<int> to_do;
   int done = 0;  // of these
@@ -75,7 +77,7 @@ struct Work {
   double shown = -infinity;
 };
 
-// Everything that decides the bytes of all frames but their budgets.
+// Everything that decides the pixels of all frames but their budgets and the scene's files.
 std::string animation_key(const Work& w, const Scene& scene) {
   Run run;
   run.scene_path = w.arguments.scene;
@@ -91,21 +93,29 @@ std::string animation_key(const Work& w, const Scene& scene) {
                      fs::path(w.arguments.scene).filename().string());
 }
 
-std::string frame_key(const Work& w, int frame) {
+std::string files_key(const Scene& scene) { return fmt::format("files with checksum {:016x}", scene.content); }
+
+std::string frame_key(const Work& w, int frame, const Scene& scene) {
   const RenderOptions& o = w.options;
-  const std::string budget = fmt::format("{:g} s, {:g} CPU s, {} spp", o.seconds, o.cpu_seconds, o.spp);
-  return fmt::format("{} frame {} {}, {}", w.key, frame, describe(w.shooting.timeline, frame), budget);
+  const std::string budget = fmt::format("{:g} s,{:g} CPU s,{} spp", o.seconds, o.cpu_seconds, o.spp);
+  return fmt::format("{},frame {} {},{},{}", w.options_key, frame, describe(w.shooting.timeline, frame),
+                     files_key(scene), budget);
 }
 
 // Whether the frame is there as it should be.
-bool is_done(const Work& w, int frame) {
+bool is_done(Work& w, int frame) {
   const std::string path = frame_name(w.pattern, frame);
   std::error_code unreadable;
   if (!fs::exists(path, unreadable)) return false;
   const Metadata metadata = read_metadata(path);
   const auto found = metadata.find("ajar:frame");
-  if (found != metadata.end() && found->second == decltype(found->second)(frame_key(w, frame))) return true;
-  throw Error(fmt::format("{}: is of another animation, or of other options; remove it, or write elsewhere", path));
+  const std::string here = frame_key(w, frame, *load_frame(w.shooting, frame));
+  const auto* there = found == metadata.end() ? nullptr : std::get_if<std::string>(&found->second);
+  if (there && *there == here) return true;
+  const std::string why = there && there->starts_with(w.options_key + ",")
+                              ? "was made otherwise: " + difference(*there, here)
+                              : "is of another animation, or of other options";
+  throw Error(fmt::format("{}: {}; remove it, or write elsewhere", path, why));
 }
 
 void show(Work& w, int frame, const char* what, const RenderState& state) {
@@ -130,7 +140,7 @@ void write_frame(Work& w, int frame, const Stage& stage, Run& run, const RenderS
   const double wall = wall_seconds(), cpu = process_cpu_seconds();
   const Picture image = develop(state.film);
   Metadata data = metadata(run, state);
-  data["ajar:frame"] = frame_key(w, frame);
+  data["ajar:frame"] = frame_key(w, frame, *stage.scene);
   write_png(frame_name(w.png, frame), image);
   run.triangles = count_triangles(*stage.scene), run.accel_bytes = stage.accel->bytes();
   run.write_seconds = wall_seconds() - wall, run.write_cpu = process_cpu_seconds() - cpu;
@@ -163,9 +173,6 @@ void render_frame(Work& w, int frame, const Stage& stage, double taught, double 
     return !stop_asked();
   });
   if (stop_asked()) interrupted(frame);
-  if (state.film.passes == 0 && state.film.chunks == 0)
-    throw Error(
-        fmt::format("frame {}: its time is over before the first pass; give --time more, or --teach less", frame));
   write_frame(w, frame, stage, run, state);
   if (state.stats.rejected > 0)
     fmt::print(stderr, "ajar: warning: frame {}: {} values were not finite or negative and were left out\n", frame,
@@ -250,7 +257,8 @@ Work prepare(const Arguments& a) {
     require_ffmpeg();
   }
   const FrameRange& r = w.shooting.timeline.frames;
-  load_frame(w.shooting, 0);  // finds out what times there are, and that both ends can be loaded
+  // Finds out what times there are, and that both ends can be loaded.
+  const std::string files = files_key(*load_frame(w.shooting, 0));
   const std::shared_ptr<const Scene> last = load_frame(w.shooting, r.last), scene = load_frame(w.shooting, r.first);
   for (const std::string& n : scene->notes)
     if (!a.quiet) fmt::print(stderr, "ajar: note: {}\n", n);
@@ -258,7 +266,8 @@ Work prepare(const Arguments& a) {
   w.sequence = a.sequence;
   w.sequence.coherence = {a.coherent == "on" || a.coherent == "fields", a.coherent == "on" || a.coherent == "numbers"};
   w.carries = w.sequence.coherence.fields && is_guided(w.options.integrator);
-  w.key = animation_key(w, *scene);
+  w.options_key = animation_key(w, *scene);
+  w.key = fmt::format("{},{}", w.options_key, files);
   const fs::path folder = fs::path(frame_name(w.pattern, 0)).parent_path();
   w.folder = folder.empty() ? "." : folder.string();
   make_folder(w.folder);

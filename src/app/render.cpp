@@ -20,6 +20,9 @@
 namespace ajar {
 namespace {
 
+// Of a time limit: what passes that only train may take.
+constexpr double training_share = 0.5;
+
 // The image is safe by now; the record is written again.
 void hold_against(const RenderArguments& a, const Scene& scene, const Accel& accel, Run& run,
                   const RenderState& state) {
@@ -47,6 +50,13 @@ void plan_run(const RenderArguments& a, Scene& scene, const Accel& accel, Run& r
     fmt::print(stderr, "ajar: note: nothing is learned, {} is not written\n", a.save_fields);
   if (!a.techniques.empty() && !run.options.techniques)
     fmt::print(stderr, "ajar: note: {} has no strategies to tell apart, {} is not written\n", chosen, a.techniques);
+}
+
+std::string interruption(const RenderArguments& a, const Film& film) {
+  const std::string rest = fmt::format("; {} has what was done", a.out);
+  if (film.passes > 0) return fmt::format("interrupted after {:.1f} spp{}", spp_of(film), rest);
+  const double share = 1 - double(film.chunks) / chunk_count(film);
+  return fmt::format("interrupted in the first pass: {:.0f} % of the image has no sample{}", 100 * share, rest);
 }
 
 void warn(const RenderState& state) {
@@ -88,7 +98,9 @@ void trace(const RenderArguments& a, const Scene& scene, const Accel& accel, Run
   if (!a.versus.empty()) budget.seconds *= 1 - versus_share, budget.cpu_seconds *= 1 - versus_share;
   Progress progress = make_progress(a.quiet);
   Saver saver{a.checkpoint, checkpoint_key(run, state.film), state.stats.seconds};
-  render(scene, accel, without_start(budget, run), state, [&](const RenderState& s) {
+  const RenderOptions limits = without_start(budget, run);
+  render(scene, accel, limits, state, [&](const RenderState& s) {
+    if (is_over(limits, s.stats, training_share)) end_training(state.learning);
     show(progress, budget, s);
     log.write(s, false);
     saver.save(s);
@@ -122,7 +134,7 @@ void run_render(RenderArguments a) {
   Scene scene = load_scene(a.scene, load);
   if (!a.size.empty()) set_size(scene.camera, a.size);
   Run run;
-  run.scene_path = a.scene, run.out_path = a.out, run.defines = a.defines;
+  run.scene_path = a.scene, run.out_path = a.out, run.content = scene.content, run.defines = a.defines;
   run.load_fields = a.load_fields, run.save_fields = a.save_fields;
   run.planned = plans(a, scene);
   run.options = render_options(a, scene, run.planned);
@@ -145,8 +157,7 @@ void run_render(RenderArguments a) {
   trace(a, scene, accel, run, state, log);
   write_all(a, scene, accel, run, state, log);
   warn(state);
-  if (run.interrupted)
-    throw Interrupted{fmt::format("interrupted after {:.1f} spp; {} has what was done", spp_of(state.film), a.out)};
+  if (run.interrupted) throw Interrupted{interruption(a, state.film)};
   if (!a.versus.empty()) hold_against(a, scene, accel, run, state);
 }
 

@@ -120,11 +120,8 @@ std::string checkpoint_key(const Run& run, const Film& film) {
   nlohmann::ordered_json o = options_json(run, film);
   for (const char* budget : {"spp", "seconds", "cpu_seconds", "noise", "threads", "load_fields", "save_fields"})
     o.erase(budget);
-  std::error_code none_such;
-  const auto bytes = std::filesystem::file_size(run.scene_path, none_such);
-  return fmt::format("{} {} ({} bytes, {} triangles) {}", version,
-                     std::filesystem::path(run.scene_path).filename().string(), none_such ? 0 : bytes, run.triangles,
-                     o.dump());
+  return fmt::format("{},{},files with checksum {:016x},{}", version,
+                     std::filesystem::path(run.scene_path).filename().string(), run.content, o.dump());
 }
 
 }  // namespace ajar

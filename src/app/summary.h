@@ -14,6 +14,7 @@ namespace ajar {
 /// What the user typed and where the time went, beside the render's own options.
 struct Run {
   std::string scene_path, out_path;
+  uint64_t content = 0;  ///< Scene::content
   std::vector<std::string> defines;
   std::string light_choice;              ///< of light_choice_names
   std::string load_fields, save_fields;  ///< files, empty: none

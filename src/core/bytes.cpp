@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <filesystem>
@@ -30,6 +31,19 @@ uint64_t checksum(const void* data, size_t n, uint64_t sum) {
     add(word);
   }
   return sum;
+}
+
+std::string difference(std::string_view there, std::string_view here) {
+  const auto take = [&](size_t front, size_t back) {
+    for (std::string_view* key : {&there, &here}) key->remove_prefix(front), key->remove_suffix(back);
+  };
+  const size_t front =
+      size_t(std::mismatch(there.begin(), there.end(), here.begin(), here.end()).first - there.begin());
+  take(front > 0 ? there.rfind(',', front - 1) + 1 : 0, 0);
+  const auto last = std::mismatch(there.rbegin(), there.rend(), here.rbegin(), here.rend()).first;
+  const size_t comma = there.find(',', size_t(last.base() - there.begin()));
+  take(0, comma == there.npos ? 0 : there.size() - comma);
+  return fmt::format("there {}, here {}", there, here);
 }
 
 void Writer::bytes(const void* data, size_t n) {

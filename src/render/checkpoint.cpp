@@ -74,7 +74,8 @@ void load_checkpoint(const std::string& path, const std::string& key, RenderStat
   std::string stored;
   r.text(stored);
   if (stored != key)
-    throw Error(fmt::format("{}: made with another scene or other options; made with: {}", path, stored));
+    throw Error(fmt::format("{}: made with another scene or other options: {}; {}", path, difference(stored, key),
+                            checkpoint_kind.cure));
   const size_t pixels = state.film.pixels();
   film_fields(r, state.film);
   r.require(is_sound(state.film, pixels));

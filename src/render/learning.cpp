@@ -48,6 +48,10 @@ StoredFields stored_fields(const Scene& scene, const Learning& l, const Film& fi
 
 bool in_training(const Learning& l) { return l.train > 0 && is_young(l); }
 
+void end_training(Learning& l) {
+  if (in_training(l)) l.train = std::min(l.train, (l.fields.generation + 2) / 2 * 2);  // passes are dropped in pairs
+}
+
 uint32_t traced_one_in(const Learning& l, const Film& film) {
   constexpr uint32_t most[blind_generations] = {4, 4, 2, 2};
   constexpr size_t least_pixels = 4096;

@@ -269,6 +269,11 @@ double process_cpu_seconds() {
   return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
 }
 
+bool is_over(const RenderOptions& options, const RenderStats& stats, double share) {
+  return (options.seconds > 0 && stats.seconds >= share * options.seconds) ||
+         (options.cpu_seconds > 0 && stats.cpu_seconds >= share * options.cpu_seconds);
+}
+
 RenderState start_render(const Scene& scene, const RenderOptions& options) {
   RenderState state;
   const Integrator& integrator = find_integrator(options.integrator);
@@ -323,15 +328,14 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   const uint32_t all = chunk_count(film);
   const auto out_of_budget = [&] {
     read_clocks();
-    if (in_training(state.learning) && !has_time_limit(options)) return false;
+    if (in_training(state.learning) || film.passes == 0) return false;  // no image yet
     if (most > 0 && film.passes >= most) return true;
     if (options.noise > 0) {
       double error = infinity;
       if (film.chunks == 0 && is_checked(film.passes)) threads.run([&] { error = estimated_error(film); });
       if (error <= options.noise) return true;
     }
-    return (options.seconds > 0 && stats.seconds >= options.seconds) ||
-           (options.cpu_seconds > 0 && stats.cpu_seconds >= options.cpu_seconds);
+    return share_of(job, film) == 1 && is_over(options, stats, 1);  // no pass of a few pixels is left over
   };
   while (!out_of_budget()) {
     const uint32_t from = film.chunks;

@@ -8,19 +8,29 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind carried_kind = {"AJARan04", "carried field file", "an animation leaves one beside its frames",
+constexpr FileKind carried_kind = {"AJARan05", "carried field file", "an animation leaves one beside its frames",
                                    "remove it: the fields are learned again from the first frame on"};
 
-// So many lessons of so many passes each, and no pass more.
-bool give_lessons(const Scene& scene, const Accel& accel, RenderOptions options, uint32_t lessons, uint32_t passes,
-                  RenderState& state, const Monitor& monitor) {
+// Share of a frame's time that its lessons may take; the first pass may take more.
+constexpr double teaching_share = 1.0 / 3;
+
+// So many lessons of so many passes each, and no pass more. Where their time is over, one all the same, which ends with
+// the next pass. False where the monitor said stop.
+bool give_lessons(const Scene& scene, const Accel& accel, const RenderOptions& options, uint32_t lessons,
+                  uint32_t passes, RenderState& state, const Monitor& monitor) {
   Learning& l = state.learning;
+  const uint32_t first = l.fields.generation;
   l.lesson = passes;
-  l.train = l.fields.generation + lessons;
-  options.spp = 0, options.seconds = 0, options.cpu_seconds = 0, options.noise = 0, options.techniques = false;
-  render(scene, accel, options, state,
-         [&](const RenderState& now) { return in_training(now.learning) && (!monitor || monitor(now)); });
-  return !in_training(l);
+  l.train = first + lessons;
+  RenderOptions endless = options;
+  endless.spp = 0, endless.seconds = 0, endless.cpu_seconds = 0, endless.noise = 0, endless.techniques = false;
+  bool stopped = false;
+  render(scene, accel, endless, state, [&](const RenderState& now) {
+    stopped = monitor && !monitor(now);
+    if (is_over(options, now.stats, teaching_share)) l.lesson = 1, l.train = std::max(l.fields.generation, first + 1);
+    return !stopped && in_training(l);
+  });
+  return !stopped;
 }
 
 }  // namespace
@@ -51,7 +61,8 @@ std::optional<Fields> teach(const Scene& scene, const Accel& accel, const Render
   }
   const uint32_t last = sequence.begin - young_generations;
   if (!give_lessons(scene, accel, teaching, young_generations, 1, state, monitor)) return {};
-  if (!give_lessons(scene, accel, teaching, 1, last, state, monitor)) return {};
+  if (!is_over(options, state.stats, teaching_share) && !give_lessons(scene, accel, teaching, 1, last, state, monitor))
+    return {};
   return std::move(state.learning.fields);
 }
 

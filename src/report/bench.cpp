@@ -21,7 +21,7 @@ struct Stand {
   const BenchScene* scene = nullptr;
   Json json;  ///< of results.json, without methods
   std::optional<Reference> reference;
-  std::string reference_hash;
+  std::string reference_hash, content;
 };
 
 struct Bench {
@@ -36,7 +36,8 @@ struct Bench {
   }
 };
 
-/// A run of an earlier call; nothing where there is none. Throws Error for one that was held against another reference.
+/// A run of an earlier call; nothing where there is none. Throws Error for one that was held against another reference,
+/// or of another scene.
 std::optional<Json> find_run(const Bench& bench, const Stand& stand, const Method& method, uint64_t seed) {
   const fs::path path = bench.run_path(stand, method, seed);
   std::error_code unreadable;
@@ -47,6 +48,10 @@ std::optional<Json> find_run(const Bench& bench, const Stand& stand, const Metho
   if (file["reference"] != stand.reference_hash)
     throw Error(fmt::format("{}: was measured against another reference; name another folder with -o, or delete {}",
                             path.string(), path.parent_path().string()));
+  if (file.value("content", "") != stand.content)
+    throw Error(fmt::format(
+        "{}: a file of the scene has changed since; name another folder with -o, or delete {} and {}", path.string(),
+        path.parent_path().string(), (bench.options.folder / "techniques" / stand.scene->name).string()));
   return file["run"];
 }
 
@@ -71,7 +76,9 @@ void write_runs(const Bench& bench, const Stand& stand, const std::vector<Racer>
     if (seed == bench.suite.seeds[0]) write_image(bench, stand, racer.method->name, develop(racer.state.film));
     const fs::path path = bench.run_path(stand, *racer.method, seed);
     make_folder(path.parent_path().string());
-    write_text(path.string(), Json{{"reference", stand.reference_hash}, {"run", run_json(racer)}}.dump(1) + "\n");
+    write_text(
+        path.string(),
+        Json{{"reference", stand.reference_hash}, {"content", stand.content}, {"run", run_json(racer)}}.dump(1) + "\n");
   }
 }
 
@@ -234,6 +241,7 @@ Stand make_stand(const Bench& bench, const BenchScene& scene) {
   const Camera& camera = loaded.scene->camera;
   stand.json["width"] = camera.crop_width;
   stand.json["height"] = camera.crop_height;
+  stand.content = content_of(*loaded.scene);
   stand.json["triangles"] = count_triangles(*loaded.scene);
   stand.reference = find_reference(bench.suite, scene, *loaded.scene, bench.options);
   return stand;

@@ -32,14 +32,11 @@ Json measure(const RenderState& state, const Picture& reference) {
           {"estimated_relmse", estimated < infinity ? Json(estimated) : Json(nullptr)}};
 }
 
-void advance(const LoadedScene& loaded, const Budget& to, const Picture& reference, bool last, Racer& racer,
+void advance(const LoadedScene& loaded, const Budget& to, const Picture& reference, Racer& racer,
              const Monitor& monitor) {
   const double spp = spp_of(racer.state.film);
   render(*loaded.scene, *loaded.accel, with_budget(racer.options, to), racer.state, monitor);
-  // The first pass at work covers a part of the image only: that is no image to measure, unless it is all there is.
-  const Film& film = racer.state.film;
-  const bool better = film.passes > 0 && spp_of(film) != spp, lest_none = last && racer.samples.empty();
-  if (better || lest_none) racer.samples.push_back(measure(racer.state, reference));
+  if (spp_of(racer.state.film) != spp) racer.samples.push_back(measure(racer.state, reference));
 }
 
 }  // namespace
@@ -86,7 +83,7 @@ bool race(const LoadedScene& loaded, const Budget& budget, const Picture& refere
   for (size_t i = 0; i < targets.size(); ++i)
     for (size_t k = 0; k < racers.size(); ++k) {
       Racer& racer = racers[(k + i + turn) % racers.size()];
-      advance(loaded, with_amount(budget, targets[i]), reference, i + 1 == targets.size(), racer,
+      advance(loaded, with_amount(budget, targets[i]), reference, racer,
               [&](const RenderState&) { return !(stopped = !watch(racer)); });
       if (stopped) return false;
     }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 
 #include "agreement.h"
 #include "ajar/core/error.h"
@@ -21,27 +20,23 @@ constexpr int fewest_batches = 16;         // to know the variance of a mean fro
 constexpr double longest_batch = 15;       // seconds, CPU or wall: what Ctrl-C may cost
 constexpr uint64_t first_seed = 1u << 31;  // far from the seeds of suites, whose noise must not be the reference's
 
-std::string file_hash(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return hash_of(std::string(std::istreambuf_iterator<char>(in), {}));
-}
-
-Json scene_json(const BenchScene& scene, const Camera& camera) {
+Json scene_json(const BenchScene& scene, const Scene& loaded) {
+  const Camera& camera = loaded.camera;
   return {{"file", scene.file},
-          {"file_hash", file_hash(scene.path)},
+          {"content", content_of(loaded)},
           {"defines", scene.defines},
           {"size", {camera.crop_width, camera.crop_height}},
           {"max_depth", scene.max_depth}};
 }
 
-Json request_json(const BenchScene& scene, const Camera& camera) {
+Json request_json(const BenchScene& scene, const Scene& loaded) {
   Json parts = Json::array();
   for (const ReferencePart& part : scene.parts) {
     Json one = options_json(part.options, false);
     one.update(to_json(part.budget));
     parts.push_back(one);
   }
-  return {{"scene", scene_json(scene, camera)}, {"made_by", parts}};
+  return {{"scene", scene_json(scene, loaded)}, {"made_by", parts}};
 }
 
 /// How a part is cut into batches: a longer budget has more of the same, so that it goes on from a shorter one.
@@ -91,10 +86,6 @@ bool render_batch(const LoadedScene& loaded, const RenderOptions& options, const
   bool stopped = false;
   render(*loaded.scene, *loaded.accel, options, state, [&](const RenderState& s) { return !(stopped = !go_on(s)); });
   if (stopped) return false;
-  if (state.film.passes == 0)
-    throw Error(
-        fmt::format("{}: {} takes longer than {:.3g} s for one sample per pixel; give the reference a longer budget",
-                    path.string(), options.integrator, state.stats.seconds));
   const Batch batch{develop(state.film), spp_of(state.film)};
   const Metadata data = {{"ajar:key", key},
                          {"ajar:spp", batch.spp},
@@ -119,7 +110,7 @@ bool collect(const BenchScene& scene, const LoadedScene& loaded, const BenchOpti
       render_options.seed = first_seed + uint64_t(i) * (first_seed >> 1) + uint64_t(k);
       render_options.threads = options.threads;
       render_options.max_depth = scene.max_depth;
-      const Json key = {{"scene", scene_json(scene, loaded.scene->camera)},
+      const Json key = {{"scene", scene_json(scene, *loaded.scene)},
                         {"options", options_json(render_options, false)},
                         {"batch", to_json(cuts[i].each)},
                         {"seed", render_options.seed},
@@ -151,8 +142,8 @@ Json block_json(const BlockTest& b) {
           {"p", b.p}};
 }
 
-Json record(const BenchScene& scene, const Camera& camera, const BenchOptions& options,
-            const std::array<Part, 2>& parts, const Agreement& agreement, const Combined& combined) {
+Json record(const BenchScene& scene, const Scene& loaded, const BenchOptions& options, const std::array<Part, 2>& parts,
+            const Agreement& agreement, const Combined& combined) {
   Json made = Json::array();
   for (size_t i = 0; i < 2; ++i)
     made.push_back({{"integrator", scene.parts[i].options.integrator},
@@ -164,7 +155,7 @@ Json record(const BenchScene& scene, const Camera& camera, const BenchOptions& o
                     {"weight", combined.weight[i]}});
   return {{"format", 1},
           {"version", options.version},
-          {"request", request_json(scene, camera)},
+          {"request", request_json(scene, loaded)},
           {"made", made},
           {"agreement",
            {{"p", agreement.p}, {"whole", block_json(agreement.whole)}, {"worst", block_json(agreement.worst)}}},
@@ -210,6 +201,8 @@ std::string hash_of(std::string_view bytes) {
   return fmt::format("{:016x}", hash);
 }
 
+std::string content_of(const Scene& scene) { return fmt::format("{:016x}", scene.content); }
+
 LoadedScene load(const Suite& suite, const BenchScene& scene) {
   LoadedScene loaded;
   const double start = wall_seconds();
@@ -244,9 +237,10 @@ std::optional<Reference> find_reference(const Suite& suite, const BenchScene& sc
   const fs::path image = stem.string() + ".exr", json = stem.string() + ".json";
   if (!fs::exists(image) || !fs::exists(json)) return {};
   Json made = read_json(json);
-  if (made.value("request", Json()) != request_json(scene, camera))
+  if (made.value("request", Json()) != request_json(scene, loaded))
     throw Error(
-        fmt::format("{}: was made from another scene file or with another budget than {} asks for \"{}\"; ask for "
+        fmt::format("{}: was made from another scene (a file of it may have changed) or with another budget than {} "
+                    "asks for \"{}\"; ask for "
                     "the same, delete it, or name another folder with --references",
                     json.string(), suite.path.string(), scene.name));
   std::optional<double> relmse;
@@ -266,7 +260,7 @@ std::optional<Reference> make_reference(const Suite& suite, const BenchScene& sc
   require_agreement(suite, scene, agreement);
   const Combined combined = combine(parts[0].batches, parts[1].batches);
   require_light(combined.image, stem.string() + ".exr");
-  const Json json = record(scene, camera, options, parts, agreement, combined);
+  const Json json = record(scene, *loaded.scene, options, parts, agreement, combined);
   write_exr(stem.string() + ".exr", combined.image, {{"ajar:version", options.version}}, true);
   write_text(stem.string() + ".json", json.dump(2) + "\n");
   std::error_code ignored;

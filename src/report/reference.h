@@ -16,6 +16,9 @@ namespace ajar {
 /// 16 hexadecimal digits (FNV-1a, 64 bits): tells whether something is still what it was.
 std::string hash_of(std::string_view bytes);
 
+/// The same of all files that a scene was read from.
+std::string content_of(const Scene& scene);
+
 /// A scene ready to be traced; it stays where it is, for the accelerator points to it.
 struct LoadedScene {
   std::unique_ptr<Scene> scene;

@@ -169,6 +169,42 @@ TEST_F(Animate, FinishedFramesAreNotRenderedAgain) {
   EXPECT_SAYS(error_of([&] { run("4", "out"); }), "of another animation");
 }
 
+// Frames of two scenes never stand in one film: neither of the scene's own file nor of one that it names.
+TEST_F(Animate, FramesOfAChangedSceneAreAnError) {
+  std::ifstream file(in("room.xml"));
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::string lamp = R"(<emitter type="area"><rgb name="radiance" value="20, 18, 15"/></emitter>)";
+  text.replace(text.find(lamp), lamp.size(), R"(<include filename="lamp.xml"/>)");
+  write("room.xml", text), write("lamp.xml", lamp);
+  run("3", "out");
+  fs::remove(in("out/f_01.exr"));
+  write("lamp.xml", R"(<emitter type="area"><rgb name="radiance" value="90, 18, 15"/></emitter>)");
+  const std::string said = error_of([&] { run("3", "out"); });
+  EXPECT_SAYS(said, "f_00.exr: was made otherwise: there files with checksum");
+  EXPECT_SAYS(said, "remove it, or write elsewhere");
+  EXPECT_FALSE(fs::exists(in("out/f_01.exr")));
+  fs::remove_all(in("out/f_00.exr")), fs::remove_all(in("out/f_02.exr"));
+  run("3", "out");  // what the fields of the other scene knew is learned anew
+  run("3", "fresh");
+  EXPECT_EQ(pixels("out/f_02.exr"), pixels("fresh/f_02.exr"));
+}
+
+// However short the time, a frame has a whole pass, and fields that had a lesson.
+TEST_F(Animate, FramesAreWholeHoweverShortTheirTime) {
+  for (const char* integrator : {"guided-bdpt", "vpl", "path"}) {
+    CLI::App app;
+    add_animate(app);
+    std::vector<std::string> arguments = {
+        "animate",       in("room.xml"), "-q",       "--time", "0.001s",
+        "--size",        "80x80",        "--frames", "2",      "-D",
+        "door=0.2..1.4", "--integrator", integrator, "-o",     in(integrator) + "_%d.exr"};
+    std::reverse(arguments.begin(), arguments.end());
+    app.parse(arguments);
+    for (const char* frame : {"_0.exr", "_1.exr"})
+      EXPECT_EQ(std::get<double>(read_metadata(in(integrator) + frame).at("ajar:spp")), 1) << integrator;
+  }
+}
+
 TEST_F(Animate, ADamagedFileOfFieldsIsLearnedAgain) {
   run("3", "out");
   const std::vector<float> last = pixels("out/f_02.exr");

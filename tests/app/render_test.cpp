@@ -10,6 +10,7 @@
 
 #include "ajar/core/error.h"
 #include "app/commands.h"
+#include "kit/files.h"
 
 namespace ajar {
 namespace {
@@ -31,13 +32,14 @@ struct Render : testing::Test {
   nlohmann::json run(std::vector<std::string> arguments) const {
     CLI::App app;
     add_render(app);
-    const std::vector<std::string> usual = {"render", AJAR_SOURCE_DIR "/scenes/box/box.xml",
-                                            "-q",     "--size",
-                                            "24x16",  "--max-depth",
-                                            "4",      "--integrator",
-                                            "path",   "-o",
-                                            out};
-    arguments.insert(arguments.begin(), usual.begin(), usual.end());
+    const std::string box = AJAR_SOURCE_DIR "/scenes/box/box.xml";
+    std::vector<std::string> all = {"render", box, "-q", "--max-depth", "4", "-o", out};
+    const auto usual = [&](const char* option, const char* value) {
+      if (std::find(arguments.begin(), arguments.end(), option) == arguments.end())
+        all.insert(all.end(), {option, value});
+    };
+    usual("--size", "24x16"), usual("--integrator", "path");
+    arguments.insert(arguments.begin(), all.begin(), all.end());
     std::reverse(arguments.begin(), arguments.end());
     app.parse(arguments);
     std::ifstream record(folder / "image.json");
@@ -181,6 +183,43 @@ TEST_F(Render, ResumeMayAimLower) {
   EXPECT_GT(second["spp"].get<double>(), 8);
   EXPECT_EQ(second["spp"], straight["spp"]);
   EXPECT_EQ(second["estimated_relmse"], straight["estimated_relmse"]);
+}
+
+// However short the time: an image has a sample in every pixel, and training leaves time for it.
+TEST_F(Render, TimeSufficesForAWholePass) {
+  const auto spp = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"--size", "160x96", "--cpu-time", "0.0001s"});
+    return run(more)["spp"].get<double>();
+  };
+  EXPECT_EQ(spp({}), 1);
+  EXPECT_EQ(spp({"--integrator", "guided-bdpt", "--train", "64"}), 1);
+  EXPECT_EQ(spp({"--integrator", "guided-bdpt"}), 1) << "not a pass that only teaches, of a few pixels";
+  const auto trained = run({"--integrator", "guided-bdpt", "--train", "64", "--cpu-time", "0.0001s"});
+  EXPECT_EQ(trained["fields"]["generation"], 2) << "training ends with the first pair of passes";
+  EXPECT_EQ(run({"--integrator", "guided-bdpt", "--train", "6", "--cpu-time", "1h", "--spp", "1"})["spp"], 1);
+}
+
+// A checkpoint is of the files that it was made from, wherever they lie.
+TEST_F(Render, ResumeKnowsTheFilesOfTheScene) {
+  namespace fs = std::filesystem;
+  const auto render = [&](const std::string& scene, std::vector<std::string> more) {
+    CLI::App app;
+    add_render(app);
+    std::vector<std::string> arguments = {"render", scene, "-q", "--size", "8x8", "--integrator", "path", "-o", out};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    std::reverse(arguments.begin(), arguments.end());
+    app.parse(arguments);
+  };
+  const auto error = [&](const std::string& scene) {
+    return kit::error_of([&] { render(scene, {"--spp", "2", "--resume", state}); });
+  };
+  for (const char* name : {"here", "there"}) fs::copy(AJAR_SOURCE_DIR "/scenes/box", folder / name);
+  render((folder / "here/box.xml").string(), {"--spp", "1", "--checkpoint", state});
+  EXPECT_EQ(error((folder / "there/box.xml").string()), "");
+  std::ofstream(folder / "there/room.xml", std::ios::app) << " ";
+  EXPECT_NE(error((folder / "there/box.xml").string()).find("other options: there files with checksum "),
+            std::string::npos);
+  EXPECT_NE(error((folder / "here/box.xml").string() + "x"), "");
 }
 
 TEST_F(Render, WhatIsNoTargetIsAnError) {

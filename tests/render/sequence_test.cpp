@@ -191,6 +191,29 @@ TEST(Sequence, TeachesInAsManyPassesAsItSays) {
   }
 }
 
+// With a time limit that is over at once: one short lesson, whatever is known already. Else clocks are not read.
+TEST(Sequence, LessonsKeepToTheTime) {
+  const Scene scene = room_at(0);
+  const Accel accel(scene);
+  RenderOptions options = statistical("guided-bdpt");
+  const auto lessons = [&](const Carried* before) {
+    return teach(scene, accel, options, SequenceOptions{}, before, {}, 0, {})->generation;
+  };
+  EXPECT_EQ(lessons(nullptr), young_generations + 1);
+  options.cpu_seconds = 1e-9;
+  const Carried begun{0, *teach(scene, accel, options, SequenceOptions{}, nullptr, {}, 0, {})};
+  EXPECT_EQ(begun.fields.generation, 1u);
+  uint32_t passes = 0;
+  SequenceOptions slow;
+  slow.teach = 64;
+  const Monitor count = [&](const RenderState& now) {
+    passes += now.film.chunks == 0;
+    return true;
+  };
+  EXPECT_EQ(teach(scene, accel, options, slow, &begun, {}, 1, count)->generation, 2u);
+  EXPECT_LE(passes, 2u);
+}
+
 TEST(Sequence, FilesGiveBackWhatIsCarried) {
   const Scene scene = room_at(0);
   const Accel accel(scene);

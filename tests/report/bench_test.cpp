@@ -204,6 +204,24 @@ TEST_F(Bench, AnotherReferenceIsRefused) {
       << error_of(small());
 }
 
+// A file that the scene includes is of the scene: neither a reference nor runs of another state of it count.
+TEST_F(Bench, AChangedSceneIsRefused) {
+  fs::copy(kit::source_path("scenes/box"), folder / "box");
+  Json json = small();
+  json["scenes"][0]["file"] = (folder / "box/box.xml").string();
+  run(json);
+  std::ofstream(folder / "box/room.xml", std::ios::app) << " ";
+  EXPECT_NE(error_of(json).find("s-16x12-depth3.json: was made from another scene"), std::string::npos);
+  const fs::path stem = reference_stem(suite(json).scenes[0], 16, 12, options.references);
+  fs::copy(stem.string() + ".exr", folder / "right.exr");
+  json["scenes"][0]["reference"] = {{"image", (folder / "right.exr").string()}};
+  options.folder = folder / "other";
+  run(json);
+  std::ofstream(folder / "box/room.xml", std::ios::app) << " ";
+  EXPECT_NE(error_of(json).find("p-seed0.json: a file of the scene has changed since"), std::string::npos)
+      << error_of(json);
+}
+
 TEST_F(Bench, ReferenceIsMadeOnceAndKept) {
   const Json results = run(small());
   const fs::path stem = reference_stem(suite(small()).scenes[0], 16, 12, options.references);
@@ -225,8 +243,10 @@ TEST_F(Bench, ReferenceIsMadeOnceAndKept) {
   Json other = small();
   other["scenes"][0]["reference"]["made_by"][0]["spp"] = 128;
   fs::remove_all(options.folder);
-  EXPECT_NE(error_of(other).find("s-16x12-depth3.json: was made from another scene file or with another budget"),
-            std::string::npos);
+  EXPECT_NE(
+      error_of(other).find(
+          "s-16x12-depth3.json: was made from another scene (a file of it may have changed) or with another budget"),
+      std::string::npos);
   EXPECT_FALSE(fs::exists(options.folder)) << "nothing is begun";
 }
 

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -16,6 +17,9 @@ namespace ajar {
 
 /// Of some bytes after others whose sum is given: any single changed word changes it.
 uint64_t checksum(const void* data, size_t n, uint64_t sum);
+
+/// What two keys, parts divided by commas, do not have in common, for messages: "there A, here B".
+std::string difference(std::string_view there, std::string_view here);
 
 /// Bytes in the order of the calls; the same machine, or one of the same byte order, reads them.
 struct Writer {

@@ -37,7 +37,8 @@ using Monitor = std::function<bool(const RenderState&)>;
 
 /// Throws Error for an unknown integrator.
 RenderState start_render(const Scene& scene, const RenderOptions& options);
-/// Traces until spp, budget or noise target is reached or the monitor says stop. The target is looked at after 8, 10,
+/// Traces until spp, budget or noise target is reached or the monitor says stop; without it, never less than one whole
+/// pass of those that count. The target is looked at after 8, 10,
 /// 12, 14, 16, 18, 20 ... 32, 36 ... passes. Deterministic for spp and noise: the same bytes with any number of
 /// threads, and when stopped and called again with the same state.
 void render(const Scene& scene, const Accel& accel, const RenderOptions& options, RenderState& state,
@@ -56,5 +57,7 @@ Picture render_features(const Scene& scene, const Accel& accel, uint64_t seed, i
 /// Seconds on the wall and of all threads of this process.
 double wall_seconds();
 double process_cpu_seconds();
+/// Whether a share of a time limit is over, wall or CPU.
+bool is_over(const RenderOptions& options, const RenderStats& stats, double share);
 
 }  // namespace ajar

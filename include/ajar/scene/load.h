@@ -19,7 +19,8 @@ struct LoadCache {
     Mesh mesh;
   };
   std::map<std::string, Image> images;
-  std::map<size_t, Placed> meshes;  ///< by the shape that they are of; one that moved is read again
+  std::map<std::string, uint64_t> files;  ///< their checksums
+  std::map<size_t, Placed> meshes;        ///< by the shape that they are of; one that moved is read again
 };
 
 struct LoadOptions {

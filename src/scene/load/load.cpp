@@ -84,6 +84,7 @@ Scene load(const std::string& text, const std::string& folder, const std::string
   const Document document = read_document(text, folder, name, options.defines);
   Loader loader{document, options.lenient, options.time, options.cache};
   loader.scene.notes = document.notes;
+  loader.scene.content = document.content;
   collect_ids(loader, document.root);
   count_meshes(loader, document.root);
   bool has_sensor = false, has_integrator = false;

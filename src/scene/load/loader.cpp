@@ -3,13 +3,42 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 
+#include "ajar/core/bytes.h"
 #include "ajar/core/error.h"
 
 namespace ajar {
 
 namespace {
+
 constexpr size_t max_open = 48;  // a plugin in a plugin in a plugin ...
+
+// In pieces: a mesh may be large.
+uint64_t checksum_of_file(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::vector<char> piece(size_t(1) << 20);
+  uint64_t sum = 0, size = 0;
+  while (in) {
+    in.read(piece.data(), std::streamsize(piece.size()));
+    sum = checksum(piece.data(), size_t(in.gcount()), sum);
+    size += uint64_t(in.gcount());
+  }
+  return checksum(&size, sizeof size, sum);
+}
+
+}  // namespace
+
+void count_text(Document& document, const std::string& text) {
+  const uint64_t size = text.size();
+  document.content = checksum(text.data(), text.size(), checksum(&size, sizeof size, document.content));
+}
+
+void count_file(Loader& loader, const std::string& path) {
+  auto& sums = loader.cache ? loader.cache->files : loader.sums;
+  const auto [known, added] = sums.emplace(path, 0);
+  if (added) known->second = checksum_of_file(path);
+  loader.scene.content = checksum(&known->second, sizeof known->second, loader.scene.content);
 }
 
 void fail(const Loader& loader, const Node& node, const std::string& text) {

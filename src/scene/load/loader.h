@@ -36,6 +36,7 @@ struct Loader {
   std::map<std::string, uint32_t> images;                       ///< by path and decoding
   std::map<std::string, int> mesh_uses;                         ///< shapes that name a file
   std::map<std::string, Mesh> meshes;                           ///< parsed files that more than one shape names
+  std::map<std::string, uint64_t> sums;                         ///< of files, where no cache keeps them
   std::set<std::string> said;                                   ///< notes, each once
   std::vector<int> texture_sizes, material_sizes;               ///< elements of each, with all that is nested
   uint32_t grey = none, black = none;                           ///< materials of shapes without a bsdf
@@ -47,6 +48,9 @@ struct Loader {
 void note(Loader& loader, const Node& node, const std::string& text);
 /// For what Ajar lacks: an Error, or with --lenient a note that ends in what is done instead.
 void unsupported(Loader& loader, const Node& node, const std::string& text, const std::string& instead);
+
+/// Adds a file that is read to Scene::content.
+void count_file(Loader& loader, const std::string& path);
 
 /// The element itself, or what a <ref> means.
 const Node& follow(const Loader& loader, const Node& node);

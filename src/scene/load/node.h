@@ -25,7 +25,8 @@ struct Document {
   std::vector<std::string> folders;            ///< where relative names are looked for, in this order
   std::map<std::string, std::string> aliases;  ///< <alias>: new name to id
   std::vector<std::string> notes;
-  bool old = false;  ///< version 0.x: a few defaults differ
+  uint64_t content = 0;  ///< checksum of the texts of all files
+  bool old = false;      ///< version 0.x: a few defaults differ
 };
 
 /// Reads a scene. name stands in messages, folder resolves relative names. Throws Error.
@@ -36,6 +37,8 @@ Document read_document(const std::string& text, const std::string& folder, const
 std::string snake_case(const std::string& name);
 /// Whole file as bytes. Throws Error with the reason.
 std::string read_text(const std::string& path);
+/// Adds the text of a file to Document::content.
+void count_text(Document& document, const std::string& text);
 /// A message without line breaks, whatever was quoted in it.
 std::string one_line(std::string text);
 /// The attribute's value, or nullptr.

@@ -183,6 +183,7 @@ std::string file(Params& params, const char* name) {
     fail(params.loader, *node,
          fmt::format("there is no file \"{}\" in {}", value.substr(0, 200),
                      fmt::join(params.loader.document.folders, " or ")));
+  count_file(params.loader, path);
   return path;
 }
 

@@ -69,9 +69,10 @@ List pairs_of(const Loader& loader, const Node& node, std::string value) {
   return list;
 }
 
-List pairs_of_file(const Loader& loader, const Node& node, const std::string& name) {
+List pairs_of_file(Loader& loader, const Node& node, const std::string& name) {
   const std::string path = find_file(loader.document, node, name);
   if (path.empty()) fail(loader, node, fmt::format("there is no file \"{}\"", name.substr(0, 200)));
+  count_file(loader, path);
   List list;
   std::istringstream lines(read_text(path));
   int number = 0;

@@ -190,6 +190,7 @@ void read_include(Reader& r, const Source& s, const pugi::xml_node& xml, const N
     fail(r, s, xml, fmt::format("files include each other more than {} deep", max_include_depth));
   const std::string folder = fs::path(path).parent_path().string();
   const std::string text = expand_entities(read_text(path), folder, path);
+  count_text(r.document, text);
   r.document.files.push_back(path);
   const Source inner = make_source(text, uint32_t(r.document.files.size() - 1), folder);
   pugi::xml_document parsed;
@@ -248,6 +249,7 @@ Document read_document(const std::string& text, const std::string& folder, const
   document.files.push_back(name);
   document.folders.push_back(folder.empty() ? "." : folder);
   const std::string expanded = expand_entities(text, document.folders.front(), name);
+  count_text(document, expanded);
   const Source source = make_source(expanded, 0, document.folders.front());
   pugi::xml_document xml;
   parse(document, xml, source, name);

@@ -1,4 +1,6 @@
 // Whole scenes: our own, and those of others where they are at hand.
+#include <unistd.h>
+
 #include "scene_text.h"
 
 namespace ajar {
@@ -37,6 +39,48 @@ TEST(OwnScenes, TheDoorTurns) {
   for (size_t i = 0; i < a.meshes.size(); ++i) moved += a.meshes[i].positions != b.meshes[i].positions;
   EXPECT_GT(moved, 0);
   EXPECT_LT(moved, 5);
+}
+
+// Scene::content tells scenes apart by what their files hold, not by where they lie or whether a cache had them.
+TEST(OwnScenes, ContentIsThatOfAllFiles) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(testing::TempDir()) / ("ajar content" + std::to_string(::getpid()));
+  const auto write = [&](const std::string& name, const std::string& text) { std::ofstream(folder / name) << text; };
+  fs::create_directories(folder / "copy");
+  const std::pair<std::string, std::string> files[] = {
+      {"scene.xml",
+       "<scene version='3.0.0'><include filename='lamp.xml'/><sensor type='perspective'/>"
+       "<shape type='obj'><string name='filename' value='mesh.obj'/><bsdf type='diffuse'>"
+       "<texture name='reflectance' type='bitmap'><string name='filename' value='image.pfm'/></texture>"
+       "</bsdf></shape></scene>"},
+      {"lamp.xml",
+       "<scene version='3.0.0'><emitter type='constant'><spectrum name='radiance' filename='light.spd'/>"
+       "</emitter></scene>"},
+      {"mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n"},
+      {"image.pfm", std::string("PF\n1 1\n-1.0\n") + std::string(12, '\0')},
+      {"light.spd", "400 1\n700 1\n"}};
+  for (const auto& [name, text] : files) write(name, text), write("copy/" + name, text);
+  const auto content = [&](const std::string& name, LoadCache* cache = nullptr) {
+    LoadOptions options;
+    options.cache = cache;
+    return load_scene((folder / name).string(), options).content;
+  };
+  LoadCache cache;
+  const uint64_t whole = content("scene.xml");
+  EXPECT_NE(whole, 0u);
+  EXPECT_EQ(content("copy/scene.xml"), whole);
+  EXPECT_EQ(content("scene.xml", &cache), whole);
+  EXPECT_EQ(content("scene.xml", &cache), whole);
+  for (const auto& [name, text] : files) {
+    std::string other = text;
+    other.back() = other.back() == '\0' ? '\1' : ' ';  // of the same size
+    if (name.ends_with("xml")) other = text + " ";
+    write(name, other);
+    EXPECT_NE(content("scene.xml"), whole) << name;
+    write(name, text);
+  }
+  EXPECT_EQ(content("scene.xml"), whole);
+  fs::remove_all(folder);
 }
 
 TEST(SharedScenes, VeachAjarIsTheSameInBothSpellings) {
