@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -19,7 +20,7 @@ struct Arguments {
   std::string scene, size, cpu_time = "60s";
   std::vector<std::string> defines;
   uint64_t seed = 0;
-  int threads = 0, max_depth = 0;
+  int threads = 0, max_depth = not_given;
   bool json = false, lenient = false;
 };
 
@@ -30,10 +31,13 @@ void run_plan(const Arguments& a) {
   RenderOptions options;
   options.cpu_seconds = parse_duration("--cpu-time", a.cpu_time);
   options.seed = a.seed, options.threads = a.threads;
-  options.max_depth = a.max_depth != 0 ? a.max_depth : scene.hints.max_depth;
+  set_max_depth(a.max_depth, scene, options);
   catch_stop();
   const Plan plan = make_plan(scene, accel, options, [](const RenderState&) { return !stop_asked(); });
   if (stop_asked()) throw Interrupted{"interrupted in the pilot; nothing is planned"};
+  if (const double least = least_budget(scene.camera); !scene.lights.empty() && options.cpu_seconds < least)
+    fmt::print(stderr, "ajar: note: --cpu-time {} is too short to measure anything; give {:.0f}s or more\n", a.cpu_time,
+               std::ceil(least));
   fmt::print("{}", a.json ? to_json(plan).dump(2) + "\n" : describe(plan));
 }
 

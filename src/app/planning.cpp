@@ -13,6 +13,8 @@ double cheapest(const Plan& plan) {
   return least;
 }
 
+std::string cell(double x, int digits) { return x < infinity ? fmt::format("{:.{}g}", x, digits) : "-"; }
+
 }  // namespace
 
 std::string describe(const Plan& plan) {
@@ -23,8 +25,11 @@ std::string describe(const Plan& plan) {
     out += fmt::format("  {:<12} {:>6} {:>10} {:>14} {:>8} {:>22}\n", "integrator", "passes", "us/sample",
                        "relMSE/sample", "+-", "time to equal error");
     for (const Trial& t : plan.trials)
-      out += fmt::format("  {:<12} {:>6} {:>10.2f} {:>14.3g} {:>8.2g} {:>22.2f}\n", t.integrator, t.passes, t.cost,
-                         t.error + t.unseen, t.deviation, t.price() / cheapest(plan));
+      out += fmt::format("  {:<12} {:>6} {:>10.2f} {:>14} {:>8} {:>22}\n", t.integrator, t.passes, t.cost,
+                         cell(t.error + t.unseen, 3), t.price() < infinity ? cell(t.deviation, 2) : "-",
+                         t.price() < infinity ? fmt::format("{:.2f}", t.price() / cheapest(plan)) : "-");
+    if (!(cheapest(plan) < infinity))
+      out += "  no trial saw any light: it is hard to find, or none comes to the camera within --max-depth\n";
   }
   out += fmt::format("  {:<16} {:<4} {}\n", "part", "on", "why");
   for (const Part& p : plan.parts) out += fmt::format("  {:<16} {:<4} {}\n", p.name, p.on ? "yes" : "no", p.why);

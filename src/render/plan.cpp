@@ -42,14 +42,19 @@ double budget_of(const RenderOptions& o, double pixels) {
   return most;
 }
 
-// Scales the camera to so many pixels as the pilot of such a budget can afford; false where that is too few.
-bool set_pilot_size(Camera& camera, double budget) {
+// CPU seconds of all trials for a pixel.
+double pilot_price() {
   double per_pixel = 0;
   for (const Candidate& c : candidates)
     per_pixel += (trial_passes + (c.guided ? blind_generations : 0)) * c.sample * 1e-6;
+  return per_pixel;
+}
+
+// Scales the camera to so many pixels as the pilot of such a budget can afford; false where that is too few.
+bool set_pilot_size(Camera& camera, double budget) {
+  if (budget < least_budget(camera)) return false;
   const double full = double(camera.width) * camera.height;
-  const double wanted = std::min(pilot_share * budget / per_pixel, full);
-  if (wanted < std::min(least_pixels, full)) return false;
+  const double wanted = std::min(pilot_share * budget / pilot_price(), full);
   const double scale = std::sqrt(wanted / full);
   set_size(camera, std::max(1, int(camera.width * scale)), std::max(1, int(camera.height * scale)));
   return true;
@@ -94,7 +99,10 @@ const Candidate& candidate_of(const std::string& name) {
 
 std::string times(const Plan& plan, const char* with, const char* without) {
   const Trial *a = find(plan, with), *b = find(plan, without);
-  if (!a || !b || !(a->price() < infinity) || !(b->price() > 0)) return "not measured";
+  if (!a || !b) return "not measured";
+  if (!(a->price() < infinity) && !(b->price() < infinity))
+    return fmt::format("{} and {} saw black alone", with, without);
+  if (!(a->price() < infinity) || !(b->price() > 0)) return "not measured";
   return fmt::format("{} takes {:.2g} times the time of {} to equal error", with, a->price() / b->price(), without);
 }
 
@@ -176,13 +184,17 @@ bool run_pilot(Scene& scene, const Accel& accel, const RenderOptions& options, d
 
 }  // namespace
 
+double least_budget(const Camera& camera) {
+  return std::min(least_pixels, double(camera.width) * camera.height) * pilot_price() / pilot_share;
+}
+
 Plan make_plan(Scene& scene, const Accel& accel, const RenderOptions& options, const Monitor& monitor) {
   Plan plan;
   plan.integrator = "guided-bdpt";
   const double wall = wall_seconds(), cpu = process_cpu_seconds();
   const double pixels = double(scene.camera.width) * scene.camera.height, budget = budget_of(options, pixels);
   const bool open = !(budget < infinity);
-  if (scene.lights.empty()) {
+  if (scene.lights.empty() || options.max_depth == 1) {  // nothing to join
     plan.integrator = "path";
   } else if (run_pilot(scene, accel, options, open ? first_guess : budget, monitor, plan)) {
     const double needed = open ? time_to(options.noise, pixels, plan) : 0;
@@ -193,6 +205,8 @@ Plan make_plan(Scene& scene, const Accel& accel, const RenderOptions& options, c
     plan.integrator = "bdpt";  // learning takes longer than there is
   }
   add_measured_parts(plan);
+  if (options.max_depth == 1)
+    for (Part& p : plan.parts) p.why = "paths of one edge see lights alone";
   add_contained_parts(scene, plan);
   plan.seconds = wall_seconds() - wall, plan.cpu_seconds = process_cpu_seconds() - cpu;
   return plan;

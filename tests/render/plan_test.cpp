@@ -127,6 +127,25 @@ TEST(Plan, WithoutLightsOrTimeThereIsNoPilot) {
 
 // Where nothing but a target for the noise ends the render, a first small pilot tells how long that takes, and what
 // takes longer gets a pilot of its share, not one of the image's size.
+// Where nothing came from no comparison can be made: that is said, not made up.
+TEST(Plan, BlackIsNoMeasurement) {
+  Scene scene = two_rooms(20, 24);
+  const Accel accel(scene);
+  RenderOptions options;
+  options.cpu_seconds = 1.01 * least_budget(scene.camera), options.max_depth = 1;
+  const Plan lights = make_plan(scene, accel, options, {});
+  EXPECT_EQ(lights.integrator, "path");
+  EXPECT_TRUE(lights.trials.empty());
+  EXPECT_EQ(lights.parts[0].why, "paths of one edge see lights alone");
+  for (Light& light : scene.lights) light.radiance = {};
+  options.max_depth = 2;
+  const Plan black = make_plan(scene, accel, options, {});
+  ASSERT_EQ(black.trials.size(), 4u);
+  EXPECT_EQ(black.parts[0].why, "guided-bdpt and guided-path saw black alone");
+  options.cpu_seconds = 0.99 * least_budget(scene.camera);
+  EXPECT_TRUE(make_plan(scene, accel, options, {}).trials.empty());
+}
+
 TEST(Plan, NoiseAloneMakesASmallPilot) {
   Scene scene = two_rooms(20, 288);
   const Accel accel(scene);

@@ -37,6 +37,9 @@ struct Plan {
 /// Share of the budget that the pilot may take.
 inline constexpr double pilot_share = 0.04;
 
+/// CPU seconds that a render of this size has to have for a pilot.
+double least_budget(const Camera& camera);
+
 /// Renders small images with every candidate and takes the one with the smallest price; the simpler of two unless the
 /// other is a tenth better. The same plan for the same scene, seed and budget. The camera has another size while the
 /// pilot runs. Where the monitor says stop, the plan is what is known by then.
