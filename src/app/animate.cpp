@@ -11,7 +11,7 @@
 
 #include "ajar/core/bytes.h"
 #include "ajar/core/error.h"
-#include "arguments.h"
+#include "animate_options.h"
 #include "commands.h"
 #include "frames.h"
 #include "progress.h"
@@ -23,45 +23,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
-  std::string scene, out, frames, keyframes, at, size, time, cpu_time, integrator, guide = "both", field_memory,
-                                                                                   coherent = "on", reference, video;
-  std::vector<std::string> defines;
-  SequenceOptions sequence;
-  int spp = 0, max_depth = not_given, threads = 0;
-  uint64_t seed = 0;
-  double fps = 24;
-  bool half = false, quiet = false, lenient = false;
-};
-
-// More than an image needs: cells of where things were are kept, and those of where they are must find room.
-constexpr const char* usual_memory = "32M";
-
-constexpr const char* coherences[] = {"on", "fields", "numbers", "off"};
-
-RenderOptions render_options(const Arguments& a, const Scene& scene) {
-  RenderOptions o;
-  if (!a.integrator.empty()) check_integrator(a.integrator);
-  o.integrator = !a.integrator.empty()                   ? a.integrator
-                 : is_integrator(scene.hints.integrator) ? scene.hints.integrator
-                                                         : std::string("guided-bdpt");
-  set_limits(a.time, a.cpu_time, a.spp, scene, o);
-  o.seed = a.seed;
-  o.threads = a.threads;
-  set_max_depth(a.max_depth, scene, o);
-  if (!is_guided(o.integrator) && (a.guide != "both" || !a.field_memory.empty()))
-    throw Error(fmt::format("{}: the integrator {} learns no fields; add --integrator guided-bdpt",
-                            a.guide != "both" ? "--guide" : "--field-memory", o.integrator));
-  if (o.integrator == "vpl" && a.guide != "both")
-    throw Error(fmt::format("--guide {}: vpl guides light subpaths alone; leave it out", a.guide));
-  o.learn.guided = a.guide == "camera" ? Guided::camera : a.guide == "light" ? Guided::light : Guided::both;
-  o.learn.memory = parse_bytes("--field-memory", a.field_memory.empty() ? usual_memory : a.field_memory);
-  return o;
-}
-
 // One animation at work.
 struct Work {
-  const Arguments& arguments;
+  const AnimateArguments& arguments;
   Shooting shooting;
   FramePattern pattern, png;
   std::string folder;
@@ -102,7 +66,7 @@ std::string frame_key(const Work& w, int frame, const Scene& scene) {
                      files_key(scene), budget);
 }
 
-// Whether the frame is there as it should be.
+// Whether the frame is there as it should be; a PNG that is missing is made again.
 bool is_done(Work& w, int frame) {
   const std::string path = frame_name(w.pattern, frame);
   std::error_code unreadable;
@@ -111,22 +75,28 @@ bool is_done(Work& w, int frame) {
   const auto found = metadata.find("ajar:frame");
   const std::string here = frame_key(w, frame, *load_frame(w.shooting, frame));
   const auto* there = found == metadata.end() ? nullptr : std::get_if<std::string>(&found->second);
-  if (there && *there == here) return true;
+  if (there && *there == here) {
+    if (const std::string png = frame_name(w.png, frame); !fs::exists(png))
+      write_png(png, select(read_picture(path), {"R", "G", "B"}));
+    return true;
+  }
   const std::string why = there && there->starts_with(w.options_key + ",")
                               ? "was made otherwise: " + difference(*there, here)
                               : "is of another animation, or of other options";
   throw Error(fmt::format("{}: {}; remove it, or write elsewhere", path, why));
 }
 
-void show(Work& w, int frame, const char* what, const RenderState& state) {
+std::string samples_text(const RenderState& state) { return fmt::format("{:.1f} spp", spp_of(state.film)); }
+
+// On a terminal one line that tells of the frame at work; else one for each that is finished.
+void show(Work& w, int frame, const std::string& what, bool finished) {
   const double now = wall_seconds();
   const bool terminal = isatty(STDERR_FILENO) != 0;
-  if (w.arguments.quiet || now - w.shown < (terminal ? 0.25 : 10)) return;
+  if (w.arguments.quiet || finished == terminal || (terminal && now - w.shown < 0.25)) return;
   w.shown = now;
-  std::string line =
-      fmt::format("frame {} ({} of {}) {}  {} {:.1f} spp  {} elapsed", frame, w.done + 1, w.to_do.size(),
-                  describe(w.shooting.timeline, frame), what, spp_of(state.film), clock_text(now - w.began));
-  if (w.done > 0)
+  std::string line = fmt::format("frame {} ({} of {}) {}  {}  {} elapsed", frame, finished ? w.done : w.done + 1,
+                                 w.to_do.size(), describe(w.shooting.timeline, frame), what, clock_text(now - w.began));
+  if (w.done > 0 && size_t(w.done) < w.to_do.size())
     line += fmt::format("  {} left", clock_text((now - w.began) / w.done * double(w.to_do.size() - size_t(w.done))));
   std::fprintf(stderr, terminal ? "\r%s\033[K" : "%s\n", line.c_str());
   std::fflush(stderr);
@@ -169,11 +139,13 @@ void render_frame(Work& w, int frame, const Stage& stage, double taught, double 
   if (budget.seconds > 0) budget.seconds = std::max(budget.seconds - run.build_seconds, 1e-3);
   if (budget.cpu_seconds > 0) budget.cpu_seconds = std::max(budget.cpu_seconds - run.build_cpu, 1e-3);
   render(*stage.scene, *stage.accel, budget, state, [&](const RenderState& s) {
-    show(w, frame, "", s);
+    show(w, frame, samples_text(s), false);
     return !stop_asked();
   });
   if (stop_asked()) interrupted(frame);
   write_frame(w, frame, stage, run, state);
+  ++w.done;
+  show(w, frame, samples_text(state), true);
   if (state.stats.rejected > 0)
     fmt::print(stderr, "ajar: warning: frame {}: {} values were not finite or negative and were left out\n", frame,
                state.stats.rejected);
@@ -188,8 +160,8 @@ std::string carried_name(const Work& w) {
 void teach_frame(Work& w, int frame, const Stage& stage) {
   const Carried* before = w.sequence.coherence.fields && w.carried ? &*w.carried : nullptr;
   std::optional<Fields> fields = teach(*stage.scene, *stage.accel, w.options, w.sequence, before, stage.moved,
-                                       uint32_t(frame), [&](const RenderState& s) {
-                                         show(w, frame, "learning", s);
+                                       uint32_t(frame), [&](const RenderState&) {
+                                         show(w, frame, "learning", false);
                                          return !stop_asked();
                                        });
   if (!fields) interrupted(frame);
@@ -219,7 +191,6 @@ void render_frames(Work& w) {
     if (wanted) {
       render_frame(w, frame, stage, wall_seconds() - wall, process_cpu_seconds() - cpu);
       if (w.carries) save_carried(carried_name(w), w.key, *w.carried);
-      ++w.done;
       if (!w.arguments.quiet) fmt::print("{}\n", frame_name(w.pattern, frame)), std::fflush(stdout);
     }
     before = std::move(stage);
@@ -239,7 +210,7 @@ void write_figures(const Work& w) {
 }
 
 // Missing reference frames, before the work rather than after it.
-void check_reference(const Arguments& a, const FrameRange& frames) {
+void check_reference(const AnimateArguments& a, const FrameRange& frames) {
   if (a.reference.empty()) return;
   const FramePattern reference = parse_pattern("--reference", a.reference);
   for (int f = frames.first; f <= frames.last; ++f)
@@ -247,7 +218,7 @@ void check_reference(const Arguments& a, const FrameRange& frames) {
       throw Error(fmt::format("--reference {}: there is no {}", a.reference, frame_name(reference, f)));
 }
 
-Work prepare(const Arguments& a) {
+Work prepare(const AnimateArguments& a) {
   Work w{a, {a.scene, a.size, a.lenient, make_timeline(a.frames, a.defines, a.keyframes, a.at), {}}};
   w.pattern = w.png = parse_pattern("-o", a.out);
   w.png.after.replace(w.png.after.size() - 4, 4, ".png");
@@ -260,11 +231,12 @@ Work prepare(const Arguments& a) {
   // Finds out what times there are, and that both ends can be loaded.
   const std::string files = files_key(*load_frame(w.shooting, 0));
   const std::shared_ptr<const Scene> last = load_frame(w.shooting, r.last), scene = load_frame(w.shooting, r.first);
+  if (!a.at.empty() && scene->hints.first_time > scene->hints.last_time)
+    throw Error(fmt::format("--at {}: nothing in the scene has an <animation>; leave it out", a.at));
   for (const std::string& n : scene->notes)
     if (!a.quiet) fmt::print(stderr, "ajar: note: {}\n", n);
   w.options = render_options(a, *scene);
-  w.sequence = a.sequence;
-  w.sequence.coherence = {a.coherent == "on" || a.coherent == "fields", a.coherent == "on" || a.coherent == "numbers"};
+  w.sequence = sequence_options(a);
   w.carries = w.sequence.coherence.fields && is_guided(w.options.integrator);
   w.options_key = animation_key(w, *scene);
   w.key = fmt::format("{},{}", w.options_key, files);
@@ -276,7 +248,7 @@ Work prepare(const Arguments& a) {
   return w;
 }
 
-void run_animate(const Arguments& a) {
+void run_animate(const AnimateArguments& a) {
   Work w = prepare(a);
   const FrameRange& r = w.shooting.timeline.frames;
   const int there = r.last - r.first + 1 - int(w.to_do.size());
@@ -295,40 +267,9 @@ void run_animate(const Arguments& a) {
 }  // namespace
 
 void add_animate(CLI::App& app) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<AnimateArguments>();
   CLI::App* c = app.add_subcommand("animate", "Render the frames of an animation (docs/animation.md)");
-  c->add_option("scene", a->scene, "Mitsuba XML scene")->required();
-  c->add_option("-o,--out", a->out, "frames to write: DIR/frame_%04d.exr; a PNG and a JSON record go beside each")
-      ->required();
-  c->add_option("--frames", a->frames, "48 for all of 48 frames; 10-20/48 for some of them, counted from 0");
-  c->add_option("-D", a->defines, "name=FROM..TO: a parameter that moves; :smooth eases it; name=value: one that stays")
-      ->allow_extra_args(false);
-  c->add_option("--keyframes", a->keyframes, "JSON file of parameters over frames");
-  c->add_option("--at", a->at, "FROM..TO: time of the scene's <animation>s at the first and last frame (default: all)");
-  c->add_option("--integrator", a->integrator, "as for ajar render (default: the scene's, else guided-bdpt)");
-  c->add_option("--spp", a->spp, "samples per pixel of each frame")->check(CLI::Range(1, 1 << 30));
-  c->add_option("--time", a->time, "wall time for each frame: 5s, 1m");
-  c->add_option("--cpu-time", a->cpu_time, "CPU time of all threads for each frame");
-  c->add_option("--seed", a->seed, "another seed, other noise");
-  c->add_option("--threads", a->threads, "threads (default: all)")->check(CLI::Range(1, 4096));
-  c->add_option("--size", a->size, "WIDTHxHEIGHT instead of the scene's");
-  c->add_option("--max-depth", a->max_depth, "edges of the longest path; 1 sees lights alone, -1 is unlimited");
-  c->add_option("--coherent", a->coherent,
-                "what frames have in common: on (learned fields and random numbers), fields, numbers or off")
-      ->check(CLI::IsMember(std::vector<std::string>(std::begin(coherences), std::end(coherences))));
-  c->add_option("--forget", a->sequence.forget, "share of the fields' evidence that lives on to the next frame")
-      ->check(CLI::Range(0.0, 0.999));
-  c->add_option("--teach", a->sequence.teach, "passes that teach the fields of a frame before it is rendered")
-      ->check(CLI::Range(1, 4096));
-  c->add_option("--guide", a->guide, "which subpaths the learned fields guide: both, camera or light")
-      ->check(CLI::IsMember({"both", "camera", "light"}));
-  c->add_option("--field-memory", a->field_memory, "memory that learned fields may take: 512K, 32M (default), 1G");
-  c->add_option("--reference", a->reference, "frames to measure error and flicker against: DIR/ref_%04d.exr");
-  c->add_option("--video", a->video, "film to make of the frames with ffmpeg: OUT.mp4");
-  c->add_option("--fps", a->fps, "of the film (24)")->check(CLI::Range(1.0, 240.0));
-  c->add_flag("--half", a->half, "16-bit floats in the EXR");
-  c->add_flag("--lenient", a->lenient, "leave out what the loader does not know, with a note");
-  c->add_flag("-q,--quiet", a->quiet, "no progress, no notes");
+  add_options(*c, *a);
   c->callback([a] { run_animate(*a); });
 }
 

@@ -151,6 +151,11 @@ std::vector<FrameFigures> measure(const FramePattern& pattern, const Timeline& t
                               image.width, image.height));
     const Metrics m = compare(image, truth, false);
     out.back().relmse = m.relmse, out.back().relmse_trimmed = m.relmse_trimmed;
+    if (before.width > 0 && (before.width != image.width || before.height != image.height))
+      throw Error(
+          fmt::format("{}: is {}x{}, the frame before it {}x{}; flicker is of frames of one size: give --size, or "
+                      "leave out --reference",
+                      path, image.width, image.height, before.width, before.height));
     if (before.width > 0) out.back().flicker = flicker(before, image, reference_before, truth);
     before = std::move(image), reference_before = std::move(truth);
   }

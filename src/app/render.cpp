@@ -52,6 +52,11 @@ void plan_run(const RenderArguments& a, Scene& scene, const Accel& accel, Run& r
     fmt::print(stderr, "ajar: note: {} has no strategies to tell apart, {} is not written\n", chosen, a.techniques);
 }
 
+void check_time(double at, const Scene& scene) {
+  if (scene.hints.first_time > scene.hints.last_time)
+    throw Error(fmt::format("--at {}: nothing in the scene has an <animation>; leave it out", at));
+}
+
 std::string interruption(const RenderArguments& a, const Film& film) {
   const std::string rest = fmt::format("; {} has what was done", a.out);
   if (film.passes > 0) return fmt::format("interrupted after {:.1f} spp{}", spp_of(film), rest);
@@ -130,8 +135,10 @@ void run_render(RenderArguments a) {
   if (a.out.empty()) a.out = std::filesystem::path(a.scene).stem().string() + ".exr";
   check_outputs(a);
   LoadOptions load = load_options(a.defines, a.lenient);
+  if (a.at && !std::isfinite(*a.at)) throw Error(fmt::format("--at {}: not a time; write a number", *a.at));
   load.time = a.at;
   Scene scene = load_scene(a.scene, load);
+  if (a.at) check_time(*a.at, scene);
   if (!a.size.empty()) set_size(scene.camera, a.size);
   Run run;
   run.scene_path = a.scene, run.out_path = a.out, run.content = scene.content, run.defines = a.defines;

@@ -65,7 +65,9 @@ FrameRange parse_frames(const std::string& written, int count) {
   if (!rest.empty() || r.first < 0 || r.last < 0 || count < 0) throw wrong("not a range of frames; " + how);
   if (!is_range && !has_count) {  // a number of frames
     if (count > 0 && count != r.first)
-      throw wrong(fmt::format("the keyframes say {}; leave one of them out, or write {}/{}", count, r.first, count));
+      throw wrong(
+          fmt::format("the keyframes say {}; leave it out{}", count,
+                      r.first < count ? fmt::format(", or write {}/{} for that frame alone", r.first, count) : ""));
     count = r.first, r.first = 0, r.last = count - 1;
   }
   if (is_range && count == 0)

@@ -12,6 +12,7 @@
 #include "ajar/core/error.h"
 #include "ajar/film/picture.h"
 #include "app/commands.h"
+#include "app/frames.h"
 #include "app/timeline.h"
 
 namespace ajar {
@@ -124,13 +125,14 @@ struct Animate : testing::Test {
   void run(const std::string& frames, const std::string& out, std::vector<std::string> more = {}) const {
     CLI::App app;
     add_animate(app);
-    std::vector<std::string> arguments = {
-        "animate", in("room.xml"),          "-q", "--teach",       "1",         "--frames", frames,
-        "-o",      in(out) + "/f_%02d.exr", "-D", "door=0.2..1.4", "--threads", "1"};
+    std::vector<std::string> arguments = {"animate", in("room.xml"),          "-q", "--frames",      frames,
+                                          "-o",      in(out) + "/f_%02d.exr", "-D", "door=0.2..1.4", "--threads",
+                                          "1"};
     const auto otherwise = [&](const char* option, const char* value) {
       if (std::find(more.begin(), more.end(), option) == more.end()) more.insert(more.end(), {option, value});
     };
     otherwise("--spp", "2"), otherwise("--integrator", "guided-bdpt");
+    if (std::find(more.begin(), more.end(), "path") == more.end()) otherwise("--teach", "1");
     arguments.insert(arguments.end(), more.begin(), more.end());
     std::reverse(arguments.begin(), arguments.end());
     app.parse(arguments);
@@ -162,8 +164,13 @@ TEST_F(Animate, FinishedFramesAreNotRenderedAgain) {
   const std::vector<float> last = pixels("out/f_02.exr");
   const auto kept = fs::last_write_time(in("out/f_01.exr"));
   fs::remove(in("out/f_02.exr"));
+  std::ifstream picture(in("out/f_01.png"), std::ios::binary);
+  const std::string png{std::istreambuf_iterator<char>(picture), {}};
+  fs::remove(in("out/f_01.png"));
   run("3", "out");
   EXPECT_EQ(fs::last_write_time(in("out/f_01.exr")), kept);
+  std::ifstream again(in("out/f_01.png"), std::ios::binary);
+  EXPECT_EQ(png, std::string(std::istreambuf_iterator<char>(again), {})) << "made again from the EXR";
   EXPECT_EQ(pixels("out/f_02.exr"), last);
   EXPECT_SAYS(error_of([&] { run("3", "out", {"--seed", "7"}); }), "other options; remove it");
   EXPECT_SAYS(error_of([&] { run("4", "out"); }), "of another animation");
@@ -250,6 +257,19 @@ TEST_F(Animate, MeasuresErrorAndFlicker) {
   EXPECT_SAYS(error_of([&] { run("4", "more", {"--reference", in("reference/f_%02d.exr")}); }), "there is no");
 }
 
+// Sizes may change from frame to frame; flicker is not of such frames, and the file that differs is named.
+TEST_F(Animate, FlickerIsOfFramesOfOneSize) {
+  run("1", "out", {"--integrator", "path", "--size", "8x8"});
+  fs::create_directories(in("film"));
+  fs::copy(in("out/f_00.exr"), in("film/f_00.exr"));
+  run("1", "wide", {"--integrator", "path", "--size", "9x8"});
+  fs::copy(in("wide/f_00.exr"), in("film/f_01.exr"));
+  const FramePattern film = parse_pattern("-o", in("film/f_%02d.exr"));
+  const Timeline two = make_timeline("2", {}, "", "");
+  EXPECT_EQ(measure(film, two, {}).size(), 2u);
+  EXPECT_SAYS(error_of([&] { measure(film, two, film); }), "film/f_01.exr: is 9x8, the frame before it 8x8");
+}
+
 TEST_F(Animate, KeyframesComeFromAFile) {
   write("keys.json", R"({"frames": 3, "parameters": {"door": {"smooth": true, "keys": [[0, 0.5], [2, 1.5]]}}})");
   CLI::App app;
@@ -273,6 +293,11 @@ TEST_F(Animate, KeyframesComeFromAFile) {
   EXPECT_SAYS(wrong(R"({"frames": 3, "parameters": {"x": [[0, "a"]]}})"), "a key is [FRAME, VALUE]");
   EXPECT_SAYS(wrong(R"({"frames": 3, "parameters": {"x": [[2, 1], [1, 1]]}})"), "in the order");
   EXPECT_SAYS(error_of([&] { make_timeline("", {}, in("none.json"), ""); }), "cannot be read");
+  write("keys.json", R"({"frames": 3})");
+  const auto frames = [&](const char* text) { return error_of([&] { make_timeline(text, {}, in("keys.json"), ""); }); };
+  EXPECT_EQ(frames("5"), "--frames 5: the keyframes say 3; leave it out");
+  EXPECT_EQ(frames("2"), "--frames 2: the keyframes say 3; leave it out, or write 2/3 for that frame alone");
+  EXPECT_EQ(frames("2/3"), "");
 }
 
 // The scene's own animation: the whole of it, unless the user wants a part.
@@ -306,6 +331,13 @@ TEST_F(Animate, SaysWhatIsWrong) {
   EXPECT_SAYS(wrong({"-D", "window=1..2"}), "-D window: the scene has no parameter of this name");
   EXPECT_SAYS(wrong({"--integrator", "pathh"}), "--integrator pathh: unknown");
   EXPECT_SAYS(wrong({"--integrator", "path", "--guide", "light"}), "learns no fields");
+  EXPECT_SAYS(wrong({"--integrator", "path", "--teach", "1"}), "--teach: the integrator path learns no fields");
+  EXPECT_SAYS(wrong({"--integrator", "path", "--forget", "0.5"}), "--forget: the integrator path learns no fields");
+  EXPECT_SAYS(wrong({"--forget", "nan"}), "--forget: not a number");
+  EXPECT_SAYS(wrong({"--coherent", "off"}), "--teach: with --coherent off");
+  EXPECT_SAYS(wrong({"--coherent", "numbers", "--forget", "0.5"}), "--forget: with --coherent numbers");
+  EXPECT_SAYS(wrong({"--at", "nan"}), "--at nan: write FROM..TO");
+  EXPECT_SAYS(wrong({"--at", "0..1"}), "--at 0..1: nothing in the scene has an <animation>");
   EXPECT_SAYS(wrong({"--time", "soon"}), "--time soon");
   const auto pattern = [&](const std::string& out) {
     return error_of([&] {

@@ -10,6 +10,7 @@
 
 #include "ajar/core/error.h"
 #include "app/commands.h"
+#include "app/planning.h"
 #include "kit/files.h"
 
 namespace ajar {
@@ -220,6 +221,34 @@ TEST_F(Render, ResumeKnowsTheFilesOfTheScene) {
   EXPECT_NE(error((folder / "there/box.xml").string()).find("other options: there files with checksum "),
             std::string::npos);
   EXPECT_NE(error((folder / "here/box.xml").string() + "x"), "");
+}
+
+TEST_F(Render, TimesAreOfScenesThatMove) {
+  EXPECT_NE(kit::error_of([&] {
+              run({"--at", "1"});
+            }).find("--at 1: nothing in the scene has an <anim"),
+            std::string::npos);
+  EXPECT_EQ(kit::error_of([&] { run({"--at", "nan"}); }), "--at nan: not a time; write a number");
+}
+
+TEST(PlanCommand, SaysWhatItKnows) {
+  const auto plan = [](std::vector<std::string> arguments) {
+    CLI::App app;
+    add_plan(app);
+    arguments.insert(arguments.end(), {AJAR_SOURCE_DIR "/scenes/box/box.xml", "plan"});
+    testing::internal::CaptureStderr();
+    const std::string error = kit::error_of([&] { app.parse(arguments); });
+    return testing::internal::GetCapturedStderr() + error;
+  };
+  EXPECT_EQ(plan({"-7", "--max-depth"}), "--max-depth -7: -1 for unlimited, 1 or more edges otherwise");
+  EXPECT_EQ(plan({"0", "--max-depth"}), "--max-depth 0: -1 for unlimited, 1 or more edges otherwise");
+  EXPECT_EQ(plan({"1s", "--cpu-time"}),
+            "ajar: note: --cpu-time 1s is too short to measure anything; give 6s or more\n");
+  Plan black;
+  black.trials.resize(1);
+  black.trials[0].error = infinity;
+  EXPECT_EQ(describe(black).find("inf"), std::string::npos);
+  EXPECT_NE(describe(black).find("no trial saw any light"), std::string::npos);
 }
 
 TEST_F(Render, WhatIsNoTargetIsAnError) {
