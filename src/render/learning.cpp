@@ -49,7 +49,8 @@ StoredFields stored_fields(const Scene& scene, const Learning& l, const Film& fi
 bool in_training(const Learning& l) { return l.train > 0 && is_young(l); }
 
 void end_training(Learning& l) {
-  if (in_training(l)) l.train = std::min(l.train, (l.fields.generation + 2) / 2 * 2);  // passes are dropped in pairs
+  const uint32_t pair = (l.fields.generation + 2) / 2 * 2;  // passes are dropped in pairs
+  if (in_training(l)) l.train = std::min(l.train, std::max(pair, blind_generations));
 }
 
 uint32_t traced_one_in(const Learning& l, const Film& film) {

@@ -11,15 +11,15 @@ namespace {
 constexpr FileKind carried_kind = {"AJARan05", "carried field file", "an animation leaves one beside its frames",
                                    "remove it: the fields are learned again from the first frame on"};
 
-// Share of a frame's time that its lessons may take; the first pass may take more.
+// Share of a frame's time that its lessons may take.
 constexpr double teaching_share = 1.0 / 3;
 
 // So many lessons of so many passes each, and no pass more. Where their time is over, one all the same, which ends with
-// the next pass. False where the monitor said stop.
+// the next pass, and as many as fields need to be of use. False where the monitor said stop.
 bool give_lessons(const Scene& scene, const Accel& accel, const RenderOptions& options, uint32_t lessons,
                   uint32_t passes, RenderState& state, const Monitor& monitor) {
   Learning& l = state.learning;
-  const uint32_t first = l.fields.generation;
+  const uint32_t first = l.fields.generation, least = std::max(first + 1, blind_generations);
   l.lesson = passes;
   l.train = first + lessons;
   RenderOptions endless = options;
@@ -27,7 +27,7 @@ bool give_lessons(const Scene& scene, const Accel& accel, const RenderOptions& o
   bool stopped = false;
   render(scene, accel, endless, state, [&](const RenderState& now) {
     stopped = monitor && !monitor(now);
-    if (is_over(options, now.stats, teaching_share)) l.lesson = 1, l.train = std::max(l.fields.generation, first + 1);
+    if (is_over(options, now.stats, teaching_share)) l.lesson = 1, l.train = std::max(l.fields.generation, least);
     return !stopped && in_training(l);
   });
   return !stopped;

@@ -34,7 +34,7 @@ StoredFields stored_fields(const Scene& scene, const Learning& learning, const F
 inline uint32_t dropped_passes(const Learning& learning, const Film& film) { return film.dropped - learning.first; }
 /// Whether passes only train the fields so far (LearnOptions::train): they do not count.
 bool in_training(const Learning& learning);
-/// Has training end with the pair of passes at work.
+/// Has training end with the pair of passes at work, but not before blind_generations of them.
 void end_training(Learning& learning);
 /// One pixel in so many is traced in the pass at hand. What blind passes find is not for the image, and the first
 /// lessons need less than all pixels of a large one.
