@@ -26,7 +26,7 @@ struct Arguments {
   int batches = 32;
   double passes = 1;
   unsigned limit = 300;
-  bool large = false, lessons = false;
+  bool large = false, lessons = false, quiet = false;
 };
 
 // What a process of its own made of a case.
@@ -166,8 +166,9 @@ void add_row(const Arguments& a, Table& table, const Case& c) {
     const Verdict v = judge(c, integrator, t.outcome, right.outcome);
     table.text += fmt::format(" {} |", cell(table, c, integrator, t, v));
     megabytes = std::max(megabytes, t.megabytes), rejected += t.outcome.rejected;
-    fmt::print(stderr, "{}, {}, {}: {:.1f} s, p {:.2g} {}{}{}\n", c.group, c.name, integrator, t.outcome.cpu_seconds,
-               v.p, v.message, c.refused ? t.outcome.refusal : "", t.death);
+    if (!a.quiet)
+      fmt::print(stderr, "{}, {}, {}: {:.1f} s, p {:.2g} {}{}{}\n", c.group, c.name, integrator, t.outcome.cpu_seconds,
+                 v.p, v.message, c.refused ? t.outcome.refusal : "", t.death);
     if (!v.ok) save_pictures(a, c, integrator, t.outcome, right.outcome);
   }
   table.text += fmt::format(" {:.0f} | {} |\n", megabytes, rejected);
@@ -277,6 +278,7 @@ int main(int argc, char** argv) {
   app.add_flag("--lessons", a.lessons,
                "instead: what is learned of closed boxes, lesson by lesson; --large: albedo 0.999, and renders too");
   app.add_flag("--large", a.large, "cases of minutes and gigabytes too");
+  app.add_flag("-q,--quiet", a.quiet, "no line for every case");
   CLI11_PARSE(app, argc, argv);
   try {
     return a.lessons ? show_lessons(a) : measure(a);

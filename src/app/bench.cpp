@@ -78,6 +78,7 @@ bool is_stress(const std::string& suite) {
     make_folder(a.out);
     std::vector<std::string> words = {program, "-o", out.string(), "--pictures", (fs::path(a.out) / "wrong").string()};
     if (a.quick) words.insert(words.end(), {"--batches", "8"});
+    if (a.quiet) words.push_back("--quiet");
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);

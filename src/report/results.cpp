@@ -118,6 +118,38 @@ std::string median_of(const Json& runs, const std::function<double(const Json&)>
   return s ? fmt::format("{:.4g}", s->median) : "-";
 }
 
+std::vector<std::string> row_of(const Json& scene, const Json& method) {
+  const double pixels = scene["width"].get<double>() * scene["height"].get<double>();
+  const Json& relmse = method["summary"]["relmse"];
+  const auto part = [&](const char* key) { return relmse.is_null() ? Json() : relmse[key]; };
+  const bool bound = !part("time_ratio").is_null() && part("time_ratio").contains("bound");
+  return {scene["name"],
+          method["name"],
+          shown(relmse, "median"),
+          shown(part("error_ratio"), "value"),
+          shown(part("time_ratio"), "value") + (bound ? " *" : ""),
+          shown(part("slope"), "value"),
+          median_of(method["runs"], [](const Json& r) { return r["spp"].get<double>(); }),
+          median_of(
+              method["runs"],
+              [&](const Json& r) { return 1e6 * r["cpu_seconds"].get<double>() / (r["spp"].get<double>() * pixels); }),
+          method["verdict"].is_null() ? "-" : method["verdict"].get<std::string>()};
+}
+
+/// Lines of columns as wide as their widest cell, numbers to the right. The last cell of a row may be longer.
+std::string aligned(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<size_t> widths(rows[0].size(), 0);
+  for (const auto& row : rows)
+    for (size_t i = 0; i + 1 < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  std::string out;
+  for (const auto& row : rows) {
+    for (size_t i = 0; i + 1 < row.size(); ++i)
+      out += i == 6 || i == 7 ? fmt::format("{:>{}}  ", row[i], widths[i]) : fmt::format("{:<{}}  ", row[i], widths[i]);
+    out += row.back() + "\n";
+  }
+  return out;
+}
+
 }  // namespace
 
 Curve curve_of(const Json& run, const std::string& metric, const char* against) {
@@ -183,28 +215,14 @@ std::string results_csv(const Json& results) {
 }
 
 std::string results_table(const Json& results) {
-  std::string table = fmt::format("{:<12} {:<14} {:<26} {:<22} {:<22} {:<24} {:>8} {:>8}  {}\n", "scene", "method",
-                                  "relMSE", "error ratio", "time ratio", "slope", "spp", "us/spl", "verdict");
+  std::vector<std::vector<std::string>> rows = {
+      {"scene", "method", "relMSE", "error ratio", "time ratio", "slope", "spp", "us/spl", "verdict"}};
   for (const Json& scene : results["scenes"]) {
     const std::string name = scene["name"];
-    if (!scene["skipped"].is_null())
-      table += fmt::format("{:<12} left out: {}\n", name, scene["skipped"].get<std::string>());
-    const double pixels = scene["skipped"].is_null() ? scene["width"].get<double>() * scene["height"].get<double>() : 1;
-    for (const Json& method : scene["methods"]) {
-      const Json& relmse = method["summary"]["relmse"];
-      const auto part = [&](const char* key) { return relmse.is_null() ? Json() : relmse[key]; };
-      const bool bound = !part("time_ratio").is_null() && part("time_ratio").contains("bound");
-      table += fmt::format(
-          "{:<12} {:<14} {:<26} {:<22} {:<22} {:<24} {:>8} {:>8}  {}\n", name, method["name"].get<std::string>(),
-          shown(relmse, "median"), shown(part("error_ratio"), "value"),
-          shown(part("time_ratio"), "value") + (bound ? " *" : ""), shown(part("slope"), "value"),
-          median_of(method["runs"], [](const Json& r) { return r["spp"].get<double>(); }),
-          median_of(
-              method["runs"],
-              [&](const Json& r) { return 1e6 * r["cpu_seconds"].get<double>() / (r["spp"].get<double>() * pixels); }),
-          method["verdict"].is_null() ? "-" : method["verdict"].get<std::string>());
-    }
+    if (!scene["skipped"].is_null()) rows.push_back({name, "left out: " + scene["skipped"].get<std::string>()});
+    for (const Json& method : scene["methods"]) rows.push_back(row_of(scene, method));
   }
+  std::string table = aligned(rows);
   for (const Json& scene : results["scenes"]) table += warning(scene);
   return table + fmt::format(
                      "medians over seeds [low, high]; ratios to {}, above 1 is better; us/spl: microseconds of CPU per "

@@ -143,7 +143,7 @@ TEST_F(Bench, GoesOnAfterAStop) {
   const Json begun = run(small());
   EXPECT_TRUE(begun["scenes"][0]["methods"][0]["verdict"].is_null());
   EXPECT_TRUE(begun["scenes"][0]["methods"][0]["summary"]["relmse"].is_null());
-  EXPECT_NE(results_table(begun).find("s            p              -"), std::string::npos);
+  EXPECT_NE(results_table(begun).find("s      p       -"), std::string::npos);
   stop_after(12);
   run(small());
   int steps = 0;
@@ -313,6 +313,22 @@ TEST_F(Bench, AbsentOptionalSceneIsSkippedAndSaidSo) {
   EXPECT_EQ(far["methods"], Json::array());
   EXPECT_TRUE(results["scenes"][0]["skipped"].is_null());
   EXPECT_NE(results_table(results).find("left out"), std::string::npos);
+}
+
+TEST_F(Bench, TableIsInLine) {
+  Json results = run(small());
+  results["scenes"][0]["name"] = "a scene with a long name";
+  for (const char* key : {"median", "low", "high"})
+    results["scenes"][0]["methods"][0]["summary"]["relmse"][key] = 1.23456e-12;
+  const std::string table = results_table(results);
+  std::istringstream in(table);
+  std::string head, row, last;
+  std::getline(in, head), std::getline(in, row), std::getline(in, last);
+  const size_t at = head.find("error ratio");
+  EXPECT_EQ(row.substr(at - 3, 2), "] ") << table;
+  EXPECT_NE(row[at], ' ') << table;
+  EXPECT_EQ(row.find("p", 24), head.find("method")) << table;
+  EXPECT_EQ(last.find("baseline"), head.find("verdict")) << table;
 }
 
 TEST_F(Bench, TableWarnsOfANoisyReference) {
