@@ -164,7 +164,9 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
   c->add_option("--field-rate", a->field_rate,
                 "of learning: recent (default: older evidence counts half), visits (1 / (1 + visits))")
       ->check(CLI::IsMember({"recent", "visits"}));
-  c->add_option("--train", a->train, "passes that train the fields and are dropped; after them the fields are frozen")
+  c->add_option("--train", a->train,
+                "passes that train the fields and are dropped, for half of a time limit at most; after them the fields "
+                "are frozen")
       ->check(whole(2, 1 << 20));
   c->add_option(
        "--light-choice", a->light_choice,
