@@ -117,7 +117,7 @@ void write_frame(Work& w, int frame, const Stage& stage, Run& run, const RenderS
   nlohmann::ordered_json record = summary(run, state);
   record["frame"] = frame;
   record["coherent"] = w.arguments.coherent;
-  write_text(fs::path(run.out_path).replace_extension(".json").string(), record.dump(2) + "\n");
+  write_text(fs::path(run.out_path).replace_extension(".json").string(), record_of(record));
   write_exr(run.out_path, image, data, w.arguments.half);  // last: a frame is done when its image is there
 }
 

@@ -154,7 +154,7 @@ void check_outputs(const RenderArguments& a) {
 }
 
 void write_record(const RenderArguments& a, const Run& run, const RenderState& state) {
-  write_text(with_extension(a.out, ".json"), summary(run, state).dump(2) + "\n");
+  write_text(with_extension(a.out, ".json"), record_of(summary(run, state)));
 }
 
 void write_image(const RenderArguments& a, const Scene& scene, const Accel& accel, Run& run, const RenderState& state) {

@@ -142,6 +142,7 @@ void run_render(RenderArguments a) {
   if (!a.size.empty()) set_size(scene.camera, a.size);
   Run run;
   run.scene_path = a.scene, run.out_path = a.out, run.content = scene.content, run.defines = a.defines;
+  run.at = a.at, run.lenient = a.lenient;
   run.load_fields = a.load_fields, run.save_fields = a.save_fields;
   run.planned = plans(a, scene);
   run.options = render_options(a, scene, run.planned);

@@ -24,6 +24,11 @@ double peak_bytes() {
   return double(usage.ru_maxrss) * 1024;
 }
 
+// On one line. What is no UTF-8, such as a file's name may be, is replaced.
+std::string in_text(const nlohmann::ordered_json& j) {
+  return j.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
 double per(double amount, double of) { return of > 0 ? amount / of : 0; }
 
 nlohmann::ordered_json options_json(const Run& run, const Film& film) {
@@ -37,12 +42,16 @@ nlohmann::ordered_json options_json(const Run& run, const Film& film) {
                               {"threads", run.threads},
                               {"width", film.width},
                               {"height", film.height},
+                              {"crop_x", film.x0},
+                              {"crop_y", film.y0},
                               {"max_depth", o.max_depth},
                               {"roulette_depth", o.roulette_depth},
                               {"heuristic", name_of(o.heuristic)},
                               {"sampler", name_of(o.sampler)},
                               {"next_event", o.next_event},
                               {"defines", run.defines}};
+  if (run.at) j["at"] = *run.at;
+  if (run.lenient) j["lenient"] = true;
   j["light_choice"] = run.light_choice;
   if (o.learn_lights) j["field_memory"] = o.learn.memory;
   if (is_merging(o.integrator)) j["merge_radius"] = o.merge_radius;
@@ -68,6 +77,10 @@ nlohmann::ordered_json phases_of(double load, double build, nlohmann::ordered_js
 }
 
 }  // namespace
+
+std::string record_of(const nlohmann::ordered_json& summary) {
+  return summary.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
 
 nlohmann::ordered_json summary(const Run& run, const RenderState& state) {
   const Counters& n = state.stats.counters;
@@ -109,7 +122,7 @@ nlohmann::ordered_json summary(const Run& run, const RenderState& state) {
 Metadata metadata(const Run& run, const RenderState& state) {
   return {{"ajar:version", std::string(version)},
           {"ajar:scene", run.scene_path},
-          {"ajar:options", options_json(run, state.film).dump()},
+          {"ajar:options", in_text(options_json(run, state.film))},
           {"ajar:seed", double(run.options.seed)},
           {"ajar:spp", state.film.passes + double(state.film.chunks) / chunk_count(state.film)},
           {"ajar:seconds", state.stats.seconds},
@@ -121,7 +134,7 @@ std::string checkpoint_key(const Run& run, const Film& film) {
   for (const char* budget : {"spp", "seconds", "cpu_seconds", "noise", "threads", "load_fields", "save_fields"})
     o.erase(budget);
   return fmt::format("{},{},files with checksum {:016x},{}", version,
-                     std::filesystem::path(run.scene_path).filename().string(), run.content, o.dump());
+                     std::filesystem::path(run.scene_path).filename().string(), run.content, in_text(o));
 }
 
 }  // namespace ajar

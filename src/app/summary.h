@@ -3,6 +3,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 
 #include "ajar/film/picture.h"
@@ -16,6 +17,8 @@ struct Run {
   std::string scene_path, out_path;
   uint64_t content = 0;  ///< Scene::content
   std::vector<std::string> defines;
+  std::optional<double> at;  ///< time of the scene's animations, where one was given
+  bool lenient = false;
   std::string light_choice;              ///< of light_choice_names
   std::string load_fields, save_fields;  ///< files, empty: none
   RenderOptions options;
@@ -30,6 +33,8 @@ struct Run {
 };
 
 nlohmann::ordered_json summary(const Run& run, const RenderState& state);
+/// The text of the file that holds it; bytes of names that are no UTF-8 are replaced.
+std::string record_of(const nlohmann::ordered_json& summary);
 Metadata metadata(const Run& run, const RenderState& state);
 /// Everything that decides the bytes of the image but the number of passes.
 std::string checkpoint_key(const Run& run, const Film& film);

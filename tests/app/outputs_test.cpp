@@ -202,6 +202,14 @@ TEST_F(Outputs, VersusIsCheckedBeforeAPlannedRender) {
   EXPECT_EQ(count(), 3u);
 }
 
+TEST_F(Outputs, NamesNeedBeNoText) {
+  testing::internal::CaptureStdout();
+  run({"-o", "caf\xe9.exr"});
+  testing::internal::GetCapturedStdout();
+  EXPECT_TRUE(fs::exists("caf\xe9.exr"));
+  EXPECT_TRUE(fs::exists("caf\xe9.json"));
+}
+
 // What a list of parts makes is checked as if it had been named.
 TEST_F(Outputs, PartsOfAPlanAreCheckedAsAnIntegratorIs) {
   const auto said = [](Words words) {

@@ -223,6 +223,25 @@ TEST_F(Render, ResumeKnowsTheFilesOfTheScene) {
   EXPECT_NE(error((folder / "here/box.xml").string() + "x"), "");
 }
 
+TEST_F(Render, ResumeKnowsTheTimeOfTheScene) {
+  const std::string scene = (folder / "moves.xml").string();
+  std::ofstream(scene) << R"(<scene version="3.0.0"><sensor type="perspective"/><shape type="sphere">
+    <animation name="to_world">
+      <transform time="0"><translate z="4"/></transform><transform time="1"><translate z="5"/></transform>
+    </animation><emitter type="area"/></shape></scene>)";
+  const auto render_at = [&](const char* time, std::vector<std::string> more) {
+    CLI::App app;
+    add_render(app);
+    more.insert(more.begin(),
+                {"render", scene, "-q", "--size", "8x8", "--integrator", "path", "-o", out, "--at", time});
+    std::reverse(more.begin(), more.end());
+    return kit::error_of([&] { app.parse(more); });
+  };
+  EXPECT_EQ(render_at("0", {"--spp", "1", "--checkpoint", state}), "");
+  EXPECT_EQ(render_at("0", {"--spp", "2", "--resume", state}), "");
+  EXPECT_NE(render_at("1", {"--spp", "2", "--resume", state}).find("\"at\":1"), std::string::npos);
+}
+
 TEST_F(Render, TimesAreOfScenesThatMove) {
   EXPECT_NE(kit::error_of([&] {
               run({"--at", "1"});
