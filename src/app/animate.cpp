@@ -23,6 +23,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// What went into the fields of a frame, which is part of its time.
+struct Lessons {
+  double seconds = 0, cpu_seconds = 0;
+  Counters counters;
+};
+
 // One animation at work.
 struct Work {
   const AnimateArguments& arguments;
@@ -121,8 +127,8 @@ void write_frame(Work& w, int frame, const Stage& stage, Run& run, const RenderS
   write_exr(run.out_path, image, data, w.arguments.half);  // last: a frame is done when its image is there
 }
 
-// Renders one frame. taught: seconds that went into the fields, wall and CPU, which are part of the frame's time.
-void render_frame(Work& w, int frame, const Stage& stage, double taught, double taught_cpu) {
+// Renders one frame.
+void render_frame(Work& w, int frame, const Stage& stage, const Lessons& lessons) {
   Run run;
   run.scene_path = w.arguments.scene, run.out_path = frame_name(w.pattern, frame);
   for (const auto& [name, value] : parameters_at(w.shooting.timeline, frame)) run.defines.push_back(name + "=" + value);
@@ -133,8 +139,9 @@ void render_frame(Work& w, int frame, const Stage& stage, double taught, double 
   run.build_seconds = stage.build_seconds, run.build_cpu = stage.build_cpu;
   RenderState state =
       w.carried ? start_with(*stage.scene, run.options, w.carried->fields) : start_render(*stage.scene, run.options);
-  state.stats.seconds = state.stats.learn_seconds = taught;
-  state.stats.cpu_seconds = state.stats.learn_cpu_seconds = taught_cpu;
+  state.stats.seconds = state.stats.learn_seconds = lessons.seconds;
+  state.stats.cpu_seconds = state.stats.learn_cpu_seconds = lessons.cpu_seconds;
+  state.stats.counters = lessons.counters;
   RenderOptions budget = run.options;  // the frame's time begins after loading: building counts
   if (budget.seconds > 0) budget.seconds = std::max(budget.seconds - run.build_seconds, 1e-3);
   if (budget.cpu_seconds > 0) budget.cpu_seconds = std::max(budget.cpu_seconds - run.build_cpu, 1e-3);
@@ -157,15 +164,20 @@ std::string carried_name(const Work& w) {
 }
 
 // The fields of a frame from those of the frame before.
-void teach_frame(Work& w, int frame, const Stage& stage) {
+Lessons teach_frame(Work& w, int frame, const Stage& stage) {
+  const double wall = wall_seconds(), cpu = process_cpu_seconds();
+  Lessons lessons;
   const Carried* before = w.sequence.coherence.fields && w.carried ? &*w.carried : nullptr;
   std::optional<Fields> fields = teach(*stage.scene, *stage.accel, w.options, w.sequence, before, stage.moved,
-                                       uint32_t(frame), [&](const RenderState&) {
+                                       uint32_t(frame), [&](const RenderState& now) {
+                                         lessons.counters = now.stats.counters;
                                          show(w, frame, "learning", false);
                                          return !stop_asked();
                                        });
   if (!fields) interrupted(frame);
   w.carried = Carried{uint32_t(frame), std::move(*fields)};
+  lessons.seconds = wall_seconds() - wall, lessons.cpu_seconds = process_cpu_seconds() - cpu;
+  return lessons;
 }
 
 // From the first frame whose fields are needed to the last that is missing.
@@ -186,10 +198,9 @@ void render_frames(Work& w) {
     const bool wanted = std::binary_search(w.to_do.begin(), w.to_do.end(), frame);
     if (!wanted && !w.carries) continue;
     Stage stage = set_up(w.shooting, frame, before ? &*before : nullptr);
-    const double wall = wall_seconds(), cpu = process_cpu_seconds();
-    if (taught) teach_frame(w, frame, stage);
+    const Lessons lessons = taught ? teach_frame(w, frame, stage) : Lessons{};
     if (wanted) {
-      render_frame(w, frame, stage, wall_seconds() - wall, process_cpu_seconds() - cpu);
+      render_frame(w, frame, stage, lessons);
       if (w.carries) save_carried(carried_name(w), w.key, *w.carried);
       if (!w.arguments.quiet) fmt::print("{}\n", frame_name(w.pattern, frame)), std::fflush(stdout);
     }

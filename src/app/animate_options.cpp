@@ -44,11 +44,11 @@ void add_options(CLI::App& command, AnimateArguments& arguments) {
   c->add_option("--keyframes", a->keyframes, "JSON file of parameters over frames");
   c->add_option("--at", a->at, "FROM..TO: time of the scene's <animation>s at the first and last frame (default: all)");
   c->add_option("--integrator", a->integrator, "as for ajar render (default: the scene's, else guided-bdpt)");
-  c->add_option("--spp", a->spp, "samples per pixel of each frame")->check(CLI::Range(1, 1 << 30));
+  c->add_option("--spp", a->spp, "samples per pixel of each frame")->check(whole(1, 1 << 30));
   c->add_option("--time", a->time, "wall time for each frame: 5s, 1m");
   c->add_option("--cpu-time", a->cpu_time, "CPU time of all threads for each frame");
-  c->add_option("--seed", a->seed, "another seed, other noise");
-  c->add_option("--threads", a->threads, "threads (default: all)")->check(CLI::Range(1, 4096));
+  c->add_option("--seed", a->seed, "another seed, other noise")->check(whole(0, ~uint64_t(0)));
+  c->add_option("--threads", a->threads, "threads (default: all)")->check(whole(1, 4096));
   c->add_option("--size", a->size, "WIDTHxHEIGHT instead of the scene's");
   c->add_option("--max-depth", a->max_depth, "edges of the longest path; 1 sees lights alone, -1 is unlimited");
   c->add_option("--coherent", a->coherent,
@@ -57,7 +57,7 @@ void add_options(CLI::App& command, AnimateArguments& arguments) {
   c->add_option("--forget", a->forget, "share of the fields' evidence that lives on to the next frame")
       ->check(CLI::Range(0.0, 0.999));
   c->add_option("--teach", a->teach, "passes that teach the fields of a frame before it is rendered")
-      ->check(CLI::Range(1, 4096));
+      ->check(whole(1, 4096));
   c->add_option("--guide", a->guide, "which subpaths the learned fields guide: both, camera or light")
       ->check(CLI::IsMember({"both", "camera", "light"}));
   c->add_option("--field-memory", a->field_memory, "memory that learned fields may take: 512K, 32M (default), 1G");

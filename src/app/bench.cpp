@@ -16,6 +16,7 @@
 #include "ajar/render/render.h"
 #include "ajar/report/bench.h"
 #include "ajar/report/page.h"
+#include "arguments.h"
 #include "commands.h"
 #include "progress.h"
 #include "stop.h"
@@ -127,7 +128,7 @@ void add_bench(CLI::App& app) {
   c->add_flag("--quick", a->quick, "the suite's smaller version of itself");
   c->add_option("--references", a->references,
                 "folder of references that are made once (default: references beside the suite)");
-  c->add_option("--threads", a->threads, "threads (default: all)")->check(CLI::Range(1, 4096));
+  c->add_option("--threads", a->threads, "threads (default: all)")->check(whole(1, 4096));
   c->add_flag("-q,--quiet", a->quiet, "no progress, no notes");
   c->callback([a] { run_bench_command(*a); });
 }

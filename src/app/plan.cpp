@@ -51,8 +51,8 @@ void add_plan(CLI::App& app) {
                 "budget of the render that is planned; the pilot takes about 5 % of it, more of a short one (60s)");
   c->add_option("--size", a->size, "WIDTHxHEIGHT instead of the scene's");
   c->add_option("--max-depth", a->max_depth, "edges of the longest path; -1 is unlimited");
-  c->add_option("--seed", a->seed, "another seed");
-  c->add_option("--threads", a->threads, "threads (default: all)")->check(CLI::Range(1, 4096));
+  c->add_option("--seed", a->seed, "another seed")->check(whole(0, ~uint64_t(0)));
+  c->add_option("--threads", a->threads, "threads (default: all)")->check(whole(1, 4096));
   c->add_option("-D", a->defines, "name=value: a parameter of the scene")->allow_extra_args(false);
   c->add_flag("--json", a->json, "for machines");
   c->add_flag("--lenient", a->lenient, "leave out what the loader does not know, with a note");

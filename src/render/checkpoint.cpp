@@ -7,7 +7,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind checkpoint_kind = {"AJARck11", "checkpoint", "render once with --checkpoint",
+constexpr FileKind checkpoint_kind = {"AJARck12", "checkpoint", "render once with --checkpoint",
                                       "start again without --resume"};
 
 // One list of fields for both ways.
@@ -22,6 +22,16 @@ template <class Io, class State>
 void stats_fields(Io& io, State& stats) {
   io.value(stats.counters), io.value(stats.rejected), io.value(stats.seconds), io.value(stats.cpu_seconds);
   io.value(stats.learn_seconds), io.value(stats.learn_cpu_seconds), io.value(stats.ledger);
+}
+
+void write(Writer& w, const std::vector<std::string>& texts) {
+  w.value(uint64_t(texts.size()));
+  for (const std::string& t : texts) w.text(t);
+}
+
+void read(Reader& r, std::vector<std::string>& texts) {
+  texts.resize(r.count(sizeof(uint64_t)));
+  for (std::string& t : texts) r.text(t);
 }
 
 void write(Writer& w, const Learning& l) {
@@ -61,6 +71,7 @@ void save_checkpoint(const std::string& path, const std::string& key, const Rend
     w.text(key);
     film_fields(w, state.film);
     stats_fields(w, state.stats);
+    write(w, state.stats.replay);
     w.value(uint8_t(state.pyramid.kept)), w.value(uint64_t(state.pyramid.layers.size()));
     for (const auto& [st, layer] : state.pyramid.layers)
       w.value(st.first), w.value(st.second), w.array(layer.raw), w.array(layer.weighted);
@@ -80,6 +91,7 @@ void load_checkpoint(const std::string& path, const std::string& key, RenderStat
   film_fields(r, state.film);
   r.require(is_sound(state.film, pixels));
   stats_fields(r, state.stats);
+  read(r, state.stats.replay);
   uint8_t kept = 0;
   r.value(kept);
   if (state.pyramid.kept && kept == 0)

@@ -212,6 +212,16 @@ TEST_F(Animate, FramesAreWholeHoweverShortTheirTime) {
   }
 }
 
+// What teaches a frame's fields is in its time, and so in its rays: else rays per second would be too few.
+TEST_F(Animate, RaysOfLessonsCount) {
+  const auto rays = [&](const std::string& teach) {
+    run("2", "taught" + teach, {"--integrator", "guided-bdpt", "--teach", teach});
+    std::ifstream record(in("taught" + teach + "/f_01.json"));
+    return nlohmann::json::parse(record)["rays"]["camera"].get<double>();
+  };
+  EXPECT_GT(rays("16"), 2 * rays("1"));
+}
+
 TEST_F(Animate, ADamagedFileOfFieldsIsLearnedAgain) {
   run("3", "out");
   const std::vector<float> last = pixels("out/f_02.exr");

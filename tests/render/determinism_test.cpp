@@ -220,10 +220,12 @@ TEST(Determinism, CheckpointAmidAPassIsTheStraightRun) {
     render(scene, accel, o, first, [&](const RenderState&) { return ++looks < 3; });
     ASSERT_EQ(first.film.passes, 1u);
     ASSERT_NE(first.film.chunks, 0u);
+    first.stats.replay = {"pixel 3,4 pass 0 seed 5", ""};
     save_checkpoint(file.path, "key", first);
     RenderState second = start_render(scene, o);
     load_checkpoint(file.path, "key", second);
     expect_same_bytes(first, second);
+    EXPECT_EQ(first.stats.replay, second.stats.replay);
     render(scene, accel, o, second, always);
     expect_same_bytes(straight, second);
     EXPECT_EQ(second.stats.rejected, 0u);
