@@ -48,7 +48,7 @@ void add_options(CLI::App& command, AnimateArguments& arguments) {
   c->add_option("--time", a->time, "wall time for each frame: 5s, 1m");
   c->add_option("--cpu-time", a->cpu_time, "CPU time of all threads for each frame");
   c->add_option("--seed", a->seed, "another seed, other noise")->check(whole(0, ~uint64_t(0)));
-  c->add_option("--threads", a->threads, "threads (default: all)")->check(whole(1, 4096));
+  add_threads(*c, a->threads);
   c->add_option("--size", a->size, "WIDTHxHEIGHT instead of the scene's");
   c->add_option("--max-depth", a->max_depth, "edges of the longest path; 1 sees lights alone, -1 is unlimited");
   c->add_option("--coherent", a->coherent,

@@ -107,6 +107,10 @@ CLI::Validator whole(uint64_t least, uint64_t most) {
   return CLI::Validator(check, most < 1 << 20 ? fmt::format("{} to {}", least, most) : fmt::format("from {}", least));
 }
 
+void add_threads(CLI::App& command, int& threads) {
+  command.add_option("--threads", threads, "threads (default: all)")->check(whole(1, 4096));
+}
+
 void refuse_empty(CLI::App& command) {
   for (CLI::Option* option : command.get_options([](CLI::Option*) { return true; }))
     option->check(

@@ -34,6 +34,8 @@ bool is_integrator(const std::string& name);
 void check_integrator(const std::string& name);
 /// For check(): a whole number in that range; one that no type holds is refused as well.
 CLI::Validator whole(uint64_t least, uint64_t most);
+/// The option --threads; 0 where it is not given: all.
+void add_threads(CLI::App& command, int& threads);
 /// Whether the name ends with .png, in any case.
 bool is_png(const std::string& path);
 bool is_exr(const std::string& path);

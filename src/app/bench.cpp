@@ -128,7 +128,7 @@ void add_bench(CLI::App& app) {
   c->add_flag("--quick", a->quick, "the suite's smaller version of itself");
   c->add_option("--references", a->references,
                 "folder of references that are made once (default: references beside the suite)");
-  c->add_option("--threads", a->threads, "threads (default: all)")->check(whole(1, 4096));
+  add_threads(*c, a->threads);
   c->add_flag("-q,--quiet", a->quiet, "no progress, no notes");
   c->callback([a] { run_bench_command(*a); });
 }

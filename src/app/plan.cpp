@@ -52,7 +52,7 @@ void add_plan(CLI::App& app) {
   c->add_option("--size", a->size, "WIDTHxHEIGHT instead of the scene's");
   c->add_option("--max-depth", a->max_depth, "edges of the longest path; -1 is unlimited");
   c->add_option("--seed", a->seed, "another seed")->check(whole(0, ~uint64_t(0)));
-  c->add_option("--threads", a->threads, "threads (default: all)")->check(whole(1, 4096));
+  add_threads(*c, a->threads);
   c->add_option("-D", a->defines, "name=value: a parameter of the scene")->allow_extra_args(false);
   c->add_flag("--json", a->json, "for machines");
   c->add_flag("--lenient", a->lenient, "leave out what the loader does not know, with a note");

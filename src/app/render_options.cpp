@@ -133,7 +133,7 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
   c->add_option("--cpu-time", a->cpu_time, "CPU time of all threads to render");
   c->add_option("--noise", a->noise, "relMSE to stop at, as estimated without a reference: 0.01");
   c->add_option("--seed", a->seed, "another seed, other noise")->check(whole(0, ~uint64_t(0)));
-  c->add_option("--threads", a->threads, "threads (default: all)")->check(whole(1, 4096));
+  add_threads(*c, a->threads);
   c->add_option("--size", a->size, "WIDTHxHEIGHT instead of the scene's; the crop window is dropped");
   c->add_option("--max-depth", a->max_depth, "edges of the longest path; 1 sees lights alone, -1 is unlimited");
   c->add_option("--roulette-depth", a->roulette_depth, "edges of a subpath before Russian roulette begins")
