@@ -168,10 +168,13 @@ void join_next_event(Work& work, float worth) {
   Vertex& v = camera[t - 1];
   if (!job.next_event || job.scene->lights.empty()) return;
   const int count = next_events(work, v, worth);
+  Sampler& first = work.sample.sampler;
+  Sampler others = first.aside();
   float received = 0;
   for (int i = 0; i < count; ++i) {
     Candidate c;
-    const bool found = join_light(*job.scene, job.walk.fields, work.sample.sampler, camera, t, job.walk.light_paths, c);
+    const bool found =
+        join_light(*job.scene, job.walk.fields, i == 0 ? first : others, camera, t, job.walk.light_paths, c);
     c.value /= float(count);
     const bool lit = found && add_if_visible(work, c, 1, t);
     charge_join(work.scratch, 1, t);
