@@ -93,29 +93,56 @@ FieldCell learn_portal(Work& w, const FieldCell& old, bool moved, Trees& out) {
 // Below, a field guides hardly better than the surface does by itself, and takes its time: it is left out.
 constexpr float least_contrast = 2;
 
+// Irradiance that next-event estimation brings, or importance that the lens itself gives, by all lessons.
+float direct_of(const Work& w, uint32_t cell) {
+  const FieldCell& old = w.field->cells[cell];
+  if (w.tallies->directs[cell] == 0) return old.direct;
+  const double mean = double(w.tallies->direct[cell]) * value_step * w.field->unit / double(w.tallies->directs[cell]);
+  return old.visits > 0 ? float(0.5 * (old.direct + mean)) : float(mean);
+}
+
+// Whether the cell's field goes on as it was: what was learned, now in the tree's masses, is not so far from it that
+// more than noise would have to be in it, and no stratum asks to be divided.   (T2)
+bool is_steady(const Work& w, const FieldCell& old, float mix, float strata, float total) {
+  constexpr float shares = 0.05f, of_strata = 0.15f, trust = 0.05f;
+  if (!w.options->steady || w.structure != Structure::adaptive || !(old.visits > 0) || !(total > 0)) return false;
+  const float was = old.total - old.direct;
+  if (std::abs(strata - was) > of_strata * was || std::abs(mix - old.mix) > trust) return false;
+  if (difference(*w.field, old.root, w.tree) > shares) return false;
+  Tree tree = w.tree;
+  reshape(tree, total, *w.options, w.divides);
+  return tree.size() == w.tree.size();
+}
+
+// The cell with new evidence alone, and with what it receives directly where that is another by far.
+FieldCell as_it_was(const Work& w, const FieldCell& old, float direct, Trees& out) {
+  constexpr float of_direct = 0.25f, of_all = 0.05f;
+  FieldCell next = old;
+  next.root = append_evidence(out, w.tree, *w.field, old.root);
+  if (std::abs(direct - old.direct) > of_direct * old.direct + of_all * old.total)
+    next.total += direct - old.direct, next.direct = direct;
+  return next;
+}
+
 FieldCell learn_cell(Work& w, uint32_t cell, double area, double paths, Trees& out) {
   const FieldCell& old = w.field->cells[cell];
-  const Tallies& t = *w.tallies;
   FieldCell next = old;
   w.tree.clear();
-  take(*w.field, t, w.options->forget, old.root, w.tree);
+  take(*w.field, *w.tallies, w.options->forget, old.root, w.tree);
   const float bare = weigh(w.tree, w.structure, 0);
   const bool even = w.structure == Structure::adaptive && contrast(w.tree) < least_contrast;
-  const float known = evidence(w.tree);
   const float floor = 0.03f * bare / pi;
   const float total = weigh(w.tree, w.structure, floor);
+  next.mix = bare > 0 ? mix_for(*w.options, evidence(w.tree)) : 0;
+  next.direct = direct_of(w, cell);
+  if (is_steady(w, old, next.mix, bare, total)) return as_it_was(w, old, next.direct, out);
   if (total > 0 && w.structure == Structure::adaptive) {
     reshape(w.tree, total, *w.options, w.divides);
     weigh(w.tree, w.structure, floor);
   }
   next.root = append(out, w.tree, w.structure);
-  if (t.directs[cell] > 0) {
-    const double mean = double(t.direct[cell]) * value_step * w.field->unit / double(t.directs[cell]);
-    next.direct = old.visits > 0 ? float(0.5 * (old.direct + mean)) : float(mean);
-  }
   next.total = next.direct + (w.rule == Rule::max ? pi * most_radiance(w.tree) : bare);
-  next.mix = bare > 0 ? mix_for(*w.options, known) : 0;
-  const float seen = float(double(t.visits[cell]) / (area * paths));
+  const float seen = float(double(w.tallies->visits[cell]) / (area * paths));
   if (w.structure == Structure::adaptive) next.near = nearness(*w.fields, w, cell);
   learn_opening(w, cell, next);
   next.even = even && next.portal == FieldCell::no_portal;

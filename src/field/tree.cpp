@@ -122,6 +122,21 @@ void reshape(Tree& tree, int32_t at, int level, float total, const LearnOptions&
   }
 }
 
+// before: share of the field's node; now: share of the tree's node at `at`.
+double difference(const Field& field, uint32_t node, double before, const Tree& tree, int32_t at, double now) {
+  const TreeNode& mine = tree[size_t(at)];
+  double mass = 0, sum = 0;
+  for (const float m : mine.mass) mass += double(m);
+  for (int i = 0; i < 16; ++i) {
+    const double was = before * field.nodes[node].steps(i) / 65536;
+    const double is = mass > 0 ? now * double(mine.mass[i]) / mass : 0;
+    const bool leaf = mine.child[i] < 0;
+    sum +=
+        leaf ? 0.5 * std::abs(was - is) : difference(field, field.nodes[node].child(i), was, tree, mine.child[i], is);
+  }
+  return sum;
+}
+
 // First place in use of a node of patches.
 int first_of(Structure structure, bool is_root) {
   return structure == Structure::adaptive ? 0 : is_root ? no_zones : no_segments;
@@ -214,6 +229,10 @@ void reshape(Tree& tree, float total, const LearnOptions& options, bool divides)
   reshape(tree, 0, 0, total, options, divides);
 }
 
+double difference(const Field& field, uint32_t node, const Tree& tree) {
+  return difference(field, node, 1, tree, 0, 1);
+}
+
 uint32_t append(Trees& out, const Tree& tree, Structure structure) {
   const uint32_t root = uint32_t(out.nodes.size());
   std::vector<int32_t> order = {0};
@@ -228,6 +247,18 @@ uint32_t append(Trees& out, const Tree& tree, Structure structure) {
       out.weight.push_back(from.child[i] >= 0 ? 0 : from.weight[i]);
     }
     out.nodes.push_back(to);
+  }
+  return root;
+}
+
+uint32_t append_evidence(Trees& out, const Tree& tree, const Field& field, uint32_t node) {
+  const uint32_t root = append(out, tree, Structure::adaptive);
+  std::vector<uint32_t> order = {node};
+  for (size_t k = 0; k < order.size(); ++k) {
+    const StrataNode& from = field.nodes[order[k]];
+    std::copy(std::begin(from.before), std::end(from.before), std::begin(out.nodes[root + k].before));
+    for (int i = 0; i < 16; ++i)
+      if (from.is_divided(i)) order.push_back(from.child(i));
   }
   return root;
 }

@@ -1,5 +1,6 @@
 // Enters: a cell's strata and what passes recorded in them.
-// Leaves: the tree of strata as the next fields keep it: new means and evidence, heavy strata divided, light ones joined.
+// Leaves: the tree of strata as the next fields keep it: new means and evidence, heavy strata divided, light ones
+// joined.
 #pragma once
 
 #include "ajar/field/learn.h"
@@ -23,6 +24,9 @@ float evidence(const Tree& tree);
 // What a field is worth as a guide: its mean square over the square of its mean, over the projected hemisphere; 1 where
 // it is even. Of masses without a floor, as weigh left them.
 float contrast(const Tree& tree);
+// Half the sum, over the strata of a field's node, of what their shares differ by from those of the tree that was taken
+// from it, of masses as weigh left them: 0 where they are alike, at most 1.
+double difference(const Field& field, uint32_t node, const Tree& tree);
 // Divides heavy strata, if any are to be divided, and joins light ones. total: what weigh returned.
 void reshape(Tree& tree, float total, const LearnOptions& options, bool divides);
 
@@ -33,6 +37,8 @@ struct Trees {
 };
 // Returns the root.
 uint32_t append(Trees& out, const Tree& tree, Structure structure);
+// The same with the shares of the field's node that the tree was taken from: its means and evidence alone are new.
+uint32_t append_evidence(Trees& out, const Tree& tree, const Field& field, uint32_t node);
 
 // Appends a cell with the strata of cell `from` and a quarter of its evidence, or with blank strata where it is none.
 void add_cell(Field& field, uint32_t from, Structure structure);

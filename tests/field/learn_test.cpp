@@ -127,6 +127,41 @@ TEST(Learn, EvenFieldsDoNotGuide) {
   EXPECT_EQ(even(20), 0u) << "5 times";
 }
 
+// Brightest at stratum 5; as much evidence as a cell has after a few lessons.
+Fields lesson_of(const Fields& before, float brightest, bool steady) {
+  LearnOptions options = whole_strata();
+  options.steady = steady, options.forget = 0.8f;
+  Lesson lesson(before);
+  for (int i = 0; i < 16; ++i) lesson.add(towards(i), i == 5 ? brightest : 1.0f, 1000);
+  record_visit(lesson.training.q, 0);
+  record_direct(lesson.fields.q, lesson.training.q, 0, 1);
+  return lesson.learned(options);
+}
+
+TEST(Learn, SteadyFieldsStayUntilTheyAreContradicted) {
+  const Fields a = lesson_of(lesson_of(one_cell(), 20, false), 20, false);
+  const auto shares = [](const Fields& f) { return f.q.nodes[f.q.cells[0].root]; };
+  const auto stays = [&](const Fields& f) {
+    const FieldCell &x = f.q.cells[0], &y = a.q.cells[0];
+    return shares(f) == shares(a) && x.total == y.total && x.direct == y.direct && x.mix == y.mix && x.near == y.near;
+  };
+  const Fields noise = lesson_of(a, 20.5f, true);
+  EXPECT_TRUE(stays(noise));
+  EXPECT_FALSE(stays(lesson_of(a, 20.5f, false)));
+  EXPECT_GT(mean_of(noise.q, 5), 20.1f) << "evidence goes on";
+  EXPECT_FALSE(stays(lesson_of(a, 60, true)));
+  EXPECT_GT(lesson_of(a, 60, true).q.cells[0].total, 1.3f * a.q.cells[0].total);
+
+  // What changes little at a time is seen as well.
+  Fields slow = a;
+  int lessons = 0;
+  float value = 20;
+  for (; stays(slow) && lessons < 20; ++lessons) slow = lesson_of(slow, value *= 1.03f, true);
+  EXPECT_GT(lessons, 2);
+  EXPECT_LT(lessons, 15);
+  EXPECT_NEAR(slow.q.cells[0].total, lesson_of(slow, value, false).q.cells[0].total, 0.1f * slow.q.cells[0].total);
+}
+
 TEST(Learn, TotalsAreIrradianceAndMixIsTrust) {
   Lesson lesson(one_cell());
   for (int i = 0; i < 16; ++i) lesson.add(towards(i), 2, 1);

@@ -19,6 +19,7 @@ struct LearnOptions {
   float trust = 32;                 ///< records after which half of the largest mix is given to the strata
   float mix = 0.8f;                 ///< largest g of (G4)
   float forget = 0.5f;              ///< share of older evidence that is kept; 1: a stratum is the mean of its records
+  bool steady = false;              ///< a cell's field stays as it is until what was learned contradicts it (T2)
   uint32_t train = 0;  ///< passes of training, even, after which fields are frozen; 0: they learn all along
   Guided guided = Guided::both;
   bool lights = true;  ///< next-event estimation learns which lights a cell sees
