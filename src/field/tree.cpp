@@ -82,6 +82,9 @@ float weigh_patches(Tree& tree, float floor, Structure structure) {
 // Share of a stratum's evidence that its parts begin with: what it is alone is no evidence that they are alike, and
 // their own first records are to tell them apart.
 constexpr float inherited = 0.1f;  // (G10)
+// Where nothing is ever forgotten, what a stratum is remains the mean of all its records, those before it was divided
+// too.
+float inherited_by(const LearnOptions& options) { return options.forget < 1 ? inherited : 1; }
 
 // How many records a stratum of a level got, by their weights: those of narrow strata weigh little, since many
 // directions are drawn there.
@@ -116,7 +119,7 @@ void reshape(Tree& tree, int32_t at, int level, float total, const LearnOptions&
       TreeNode& mine = tree[size_t(at)];
       TreeNode& part = tree.back();
       for (int j = 0; j < 16; ++j)
-        part.mean[j] = mine.mean[i], part.weight[j] = inherited * mine.weight[i] / 16, part.child[j] = -1;
+        part.mean[j] = mine.mean[i], part.weight[j] = inherited_by(options) * mine.weight[i] / 16, part.child[j] = -1;
       mine.child[i] = fresh;
     }
   }

@@ -214,6 +214,11 @@ TEST(Learn, HeavyStrataDivideAndLightOnesJoin) {
   EXPECT_FLOAT_EQ(a.q.cells[0].mix, 0.8f * 31 / (31 + 32)) << "dividing costs no trust";
   EXPECT_EQ(a.w.nodes.size(), 1u);
 
+  LearnOptions visits;
+  visits.forget = 1;
+  const Fields whole = first.learned(visits);
+  EXPECT_EQ(whole.q.weight[16 * whole.q.nodes[whole.q.cells[0].root].child(5)], kept(1)) << "nothing is forgotten";
+
   LearnOptions tight;
   tight.memory = bytes(blank);
   EXPECT_EQ(first.learned(tight).q.nodes.size(), 1u) << "no memory is left";
