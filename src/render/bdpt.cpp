@@ -169,7 +169,7 @@ void join_next_event(Work& work, float worth) {
   if (!job.next_event || job.scene->lights.empty()) return;
   const int count = next_events(work, v, worth);
   Sampler& first = work.sample.sampler;
-  Sampler others = first.aside();
+  Sampler others = count > 1 ? first.aside() : first;
   float received = 0;
   for (int i = 0; i < count; ++i) {
     Candidate c;
