@@ -101,8 +101,8 @@ float direct_of(const Work& w, uint32_t cell) {
   return old.visits > 0 ? float(0.5 * (old.direct + mean)) : float(mean);
 }
 
-// Whether the cell's field goes on as it was: what was learned, now in the tree's masses, is not so far from it that
-// more than noise would have to be in it, and no stratum asks to be divided.   (T2)
+// Whether the cell's field goes on as it was: what was learned, now in the tree's masses, differs from it by no more
+// than noise may, and no stratum asks to be divided.   (T2)
 bool is_steady(const Work& w, const FieldCell& old, float mix, float strata, float total) {
   constexpr float shares = 0.05f, of_strata = 0.15f, trust = 0.05f;
   if (!w.options->steady || w.structure != Structure::adaptive || !(old.visits > 0) || !(total > 0)) return false;
