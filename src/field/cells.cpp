@@ -35,6 +35,15 @@ const CellTable::Slot* find_slot(const CellTable& table, CellKey key) {
   return slot.key == key ? &slot : nullptr;
 }
 
+uint32_t octant_of(const glm::uvec3& c) { return (c.x & 1) | (c.y & 1) << 1 | (c.z & 1) << 2; }
+
+// What a cell's parent has of it; null where no parent is divided.
+CellTable::Part* entry_in_parent(CellTable& table, CellKey key) {
+  const CellKey above = parent_of(key);
+  const CellTable::Slot* parent = above ? find_slot(table, above) : nullptr;
+  return parent && parent->at.parts ? &table.parts[parent->at.parts][octant_of(coordinates_of(key))] : nullptr;
+}
+
 // Coordinates of a point on the finest level.
 glm::uvec3 finest(const CellTable& table, const Vec3& p) {
   const Vec3 q = (p - table.origin) * (float(1 << most_cell_levels) / table.width);
@@ -93,7 +102,7 @@ Place find_probe(const CellTable& table, const Vec3& p, const Vec3& n) {
   const bool back = glm::dot(table.probes[s.found].n, n) < 0;
   const CellKey key = make_key(0, back, {s.found & most_coordinate, s.found >> bits, 0});
   const CellTable::Slot* slot = find_slot(table, key);
-  return slot ? Place{slot->cell, 0} : Place{none, key};
+  return slot ? Place{slot->at.cell, 0} : Place{none, key};
 }
 
 // Orders a range of probes as a kd-tree.
@@ -144,18 +153,17 @@ Place find(const CellTable& table, const Vec3& p, const Vec3& n) {
   if (!table.probes.empty()) return find_probe(table, p, n);
   const glm::uvec3 c = finest(table, p);
   const uint32_t kind = normal_bin(n) | compartment_of(table, c, p) << 5;
-  Place out;
-  for (int level = 0; level <= most_cell_levels; ++level) {
-    const CellKey key = make_key(level, kind, c >> uint32_t(most_cell_levels - level));
-    const CellTable::Slot* slot = find_slot(table, key);
-    if (!slot) {
-      out.missing = key;
-      return out;
-    }
-    out.cell = slot->cell;
-    if (!slot->divided) return out;
+  const CellKey top = make_key(0, kind, c >> uint32_t(most_cell_levels));
+  const CellTable::Slot* slot = find_slot(table, top);
+  if (!slot) return {none, top};
+  CellTable::Part at = slot->at;
+  for (uint32_t level = 1; at.parts != 0 && level <= uint32_t(most_cell_levels); ++level) {
+    const glm::uvec3 part = c >> (uint32_t(most_cell_levels) - level);
+    const CellTable::Part next = table.parts[at.parts][octant_of(part)];
+    if (next.cell == none) return {at.cell, make_key(int(level), kind, part)};
+    at = next;
   }
-  return out;
+  return {at.cell, 0};
 }
 
 void insert(CellTable& table, CellKey key, uint32_t cell) {
@@ -165,16 +173,30 @@ void insert(CellTable& table, CellKey key, uint32_t cell) {
     for (const CellTable::Slot& s : old)
       if (s.key != 0) place(table, s);
   }
-  place(table, {key, cell, false});
+  place(table, {key, {cell, 0}});
   ++table.used;
+  if (CellTable::Part* entry = entry_in_parent(table, key)) *entry = {cell, 0};
 }
 
 uint32_t cell_of(const CellTable& table, CellKey key) {
   const CellTable::Slot* slot = find_slot(table, key);
-  return slot ? slot->cell : none;
+  return slot ? slot->at.cell : none;
 }
 
-void set_divided(CellTable& table, CellKey key) { table.slots[slot_of(table, key)].divided = true; }
+void set_divided(CellTable& table, CellKey key) {
+  CellTable::Part& at = table.slots[slot_of(table, key)].at;
+  if (at.parts != 0) return;
+  if (table.parts.empty()) table.parts.resize(1);
+  at.parts = uint32_t(table.parts.size());
+  std::array<CellTable::Part, 8>& parts = table.parts.emplace_back();
+  const glm::uvec3 first = coordinates_of(key) << 1u;
+  for (uint32_t i = 0; i < 8; ++i) {
+    const glm::uvec3 c = first + glm::uvec3(i & 1, i >> 1 & 1, i >> 2);
+    const CellTable::Slot* slot = find_slot(table, make_key(level_of(key) + 1, uint32_t(key >> at_normal) & 511, c));
+    if (slot) parts[i] = slot->at;
+  }
+  if (CellTable::Part* entry = entry_in_parent(table, key)) entry->parts = at.parts;
+}
 
 int level_of(CellKey key) { return int(key >> at_level) - 1; }
 

@@ -104,9 +104,9 @@ size_t bytes(const Fields& f) {
     return (x.cells.size() + x.portals.size()) * sizeof(FieldCell) +
            x.nodes.size() * (sizeof(StrataNode) + 32 * sizeof(Short));
   };
-  return f.table.slots.size() * sizeof(CellTable::Slot) + f.table.probes.size() * sizeof(Probe) +
-         f.cells.size() * sizeof(Cell) + bytes(f.views) + of(f.q) + of(f.w) + of(f.disk) + bytes(f.lights) +
-         bytes(f.starts);
+  return f.table.slots.size() * sizeof(CellTable::Slot) + f.table.parts.size() * sizeof(f.table.parts[0]) +
+         f.table.probes.size() * sizeof(Probe) + f.cells.size() * sizeof(Cell) + bytes(f.views) + of(f.q) + of(f.w) +
+         of(f.disk) + bytes(f.lights) + bytes(f.starts);
 }
 
 }  // namespace ajar

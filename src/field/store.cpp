@@ -243,7 +243,7 @@ void write(Writer& w, const Fields& fields) {
   // The table's divided marks go with the cells; the table itself is made anew.
   std::vector<char> divided(fields.cells.size());
   for (const CellTable::Slot& s : fields.table.slots)
-    if (s.key != 0) divided[s.cell] = s.divided;
+    if (s.key != 0) divided[s.at.cell] = s.at.parts != 0;
   w.value(uint64_t(fields.cells.size()));
   for (size_t i = 0; i < fields.cells.size(); ++i) {
     const Cell& c = fields.cells[i];

@@ -134,6 +134,29 @@ void append(LightStore& store, const LightStore& more) {
 }
 
 namespace {
+// Sums of values up to and with each eighth of them: eight chains of additions are faster than one.
+constexpr uint32_t runs = 8, run = LightStore::width / runs;
+using Sums = std::array<float, runs>;
+
+Sums sums_of(const Values& values) {
+  Sums sums{};
+  for (uint32_t k = 0; k < run; ++k)
+    for (uint32_t i = 0; i < runs; ++i) sums[i] += values[i * run + k];
+  for (uint32_t i = 1; i < runs; ++i) sums[i] += sums[i - 1];
+  return sums;
+}
+
+// Which value a place within the sum of all is in.
+uint32_t find(const Sums& sums, const Values& values, float at) {
+  uint32_t i = 0;  // sums only rise: as many as the place is past
+  for (uint32_t j = 0; j + 1 < runs; ++j) i += !(at < sums[j]);
+  float before = i > 0 ? sums[i - 1] : 0;
+  uint32_t k = i * run;
+  for (const uint32_t last = k + run - 1; k < last; ++k)
+    if (at < (before += values[k])) break;
+  return k;
+}
+
 // How many joins a camera vertex is worth that would bring so much of its pixel. What comes of a join rises with the
 // root of what was expected, since what seems to bring most is mostly hidden: measured.
 float joins_for(float brings) { return std::clamp(3 * std::sqrt(brings), 0.1f, 16.0f); }  // (J3)
@@ -150,16 +173,13 @@ void choose(const LightStore& store, const Vertex& camera, double inner, int mos
   Values values;
   expect(b, camera, near_of(camera, inner), most, values);
   apply_chances(b, camera, values);
-  float sum = 0;
-  Values sums;
-  for (uint32_t i = 0; i < LightStore::width; ++i) sums[i] = sum += values[i];
+  const Sums sums = sums_of(values);
+  const float sum = sums.back();
   if (!(sum > 0) || !(sum < infinity)) return;
   const float share = float(double(n) / store.paths);
   const float count = worth > 0 ? joins_for(worth * share * sum) : 1;
   for (float mark = u.y; mark < count; ++mark) {
-    const float at = mark / count * sum;
-    uint32_t i = 0;  // sums only rise: as many as the mark is past
-    for (uint32_t j = 0; j + 1 < LightStore::width; ++j) i += !(at < sums[j]);
+    const uint32_t i = find(sums, values, mark / count * sum);
     if (!(values[i] > 0)) continue;
     const LightStore::Place& place = store.places[i * n + block];
     out.push_back({&place, share * place.counts * sum / (values[i] * count)});

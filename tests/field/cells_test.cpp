@@ -94,6 +94,35 @@ TEST(Cells, DivideDownToTheLastLevel) {
   EXPECT_EQ(find(t, p, up).missing, 0u);
 }
 
+// As a file of fields may have them: parts before wholes, marks of division in any order.
+TEST(Cells, AnswerTheSameInWhateverOrderTheyCame) {
+  CellTable grown = table(), stored = table();
+  Sampler sampler = make_sampler(SamplerKind::independent, 1, Side::camera, 0, 0);
+  const Vec3 corner = centre_of_cube(grown, 3, 4, 5);
+  const auto somewhere = [&] { return corner + grown.width * Vec3(sampler.next2(), sampler.next2().x); };
+  std::vector<CellKey> keys;
+  std::set<CellKey> divided;
+  for (int i = 0; i < 3000; ++i) {
+    const CellKey missing = find(grown, somewhere(), up).missing;
+    if (missing == 0) continue;
+    insert(grown, missing, uint32_t(keys.size()));
+    if (keys.size() % 3 != 2 && level_of(missing) < 5) divided.insert(missing), set_divided(grown, missing);
+    keys.push_back(missing);
+  }
+  ASSERT_GT(keys.size(), 500u);
+  for (size_t i = keys.size(); i-- > 0;) {
+    insert(stored, keys[i], uint32_t(i));
+    if (i % 2 == 0 && divided.contains(keys[i])) set_divided(stored, keys[i]);
+  }
+  for (const CellKey key : divided) set_divided(stored, key), set_divided(stored, key);
+  for (int i = 0; i < 10000; ++i) {
+    const Vec3 p = somewhere();
+    const Place a = find(grown, p, up), b = find(stored, p, up);
+    ASSERT_EQ(a.cell, b.cell);
+    ASSERT_EQ(a.missing, b.missing);
+  }
+}
+
 TEST(Cells, TableGrows) {
   CellTable t = table();
   std::vector<CellKey> keys;

@@ -3,6 +3,7 @@
 // where its parts are not known.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "ajar/core/frame.h"
@@ -42,16 +43,21 @@ struct Probe {
   uint32_t axis = 0;  ///< along which it divides the probes beside it (make_probe_table)
 };
 
-/// Cells of all levels in one open hash table.
+/// Cells of all levels in one open hash table, and the way from one to its parts.
 struct CellTable {
+  /// One of the eight cubes of a divided cell; none where it is not known.
+  struct Part {
+    uint32_t cell = none;
+    uint32_t parts = 0;  ///< which of CellTable::parts it is divided into; 0: undivided
+  };
   struct Slot {
     CellKey key = 0;
-    uint32_t cell = none;
-    bool divided = false;
+    Part at;
   };
   Vec3 origin{0};
-  float width = 1;          ///< edge of the cubes of level 0
-  std::vector<Slot> slots;  ///< a power of two of them
+  float width = 1;                         ///< edge of the cubes of level 0
+  std::vector<Slot> slots;                 ///< a power of two of them
+  std::vector<std::array<Part, 8>> parts;  ///< of every divided cell, by octants; the first is nobody's
   std::vector<CellCut> cuts;
   std::vector<int32_t> compartments;  ///< per cube of level 0: its first cut, or ~0; empty: nothing is cut
   std::vector<Portal> portals;        ///< of the walls that cut the most
