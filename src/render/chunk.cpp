@@ -17,7 +17,7 @@ Sample make_sample(const Job& job, const Film& film, int x, int y) {
   s.x = x, s.y = y;
   s.path = index_of(film, x, y);
   s.pass = film.dropped + film.passes;
-  s.teaches = job.learning && is_recorded(*job.learning, s.path, s.pass, rare_records);
+  s.teaches = job.learning && is_recorded(*job.learning, s.path, s.pass, recorded_one_in(*job.learning, film));
   s.sampler = make_sampler(job.sampler, job.seed, Side::camera, s.path, s.pass);
   const Vec2 centre(float(film.x0 + x) + 0.5f, float(film.y0 + y) + 0.5f);
   s.raster = centre + ajar::sample(film.filter, s.sampler.next2(), s.filter);
@@ -34,11 +34,10 @@ bool is_traced(const Job& job, const Film& film, int x, int y) {
 // Not those that are recorded more than others.
 bool is_timed(const Sample& s) { return hash(0x71c5 + s.path, s.pass) % timed_samples == 0; }
 
-// The light half of a sample; whether it brought something.
-bool trace_half(const Job& job, Sample sample, Scratch& scratch) {
+// The light half of a sample, of which one in so many is recorded; whether it brought something.
+bool trace_half(const Job& job, Sample sample, uint32_t recorded, Scratch& scratch) {
   const size_t splats = scratch.splats->size();
-  sample.teaches =
-      job.learning && is_recorded(*job.learning, sample.path, sample.pass, rare_records / job.pixels_per_light);
+  sample.teaches = job.learning && is_recorded(*job.learning, sample.path, sample.pass, recorded);
   scratch.clock = is_timed(sample) ? clock_ticks() : 0;
   job.light_half(job, sample, scratch);
   return scratch.splats->size() > splats;
@@ -79,7 +78,11 @@ void trace_light_halves(const Job& job, Film& film, uint32_t chunk, Scratch& scr
   halves.splat_counts = float(share_of(job, film));
   if (count > 0) halves.splat_counts *= float(count) / float((count + n - 1) / n);
   if (!job.light_half) return;
-  for (size_t i = 0; i < count; i += n) halves.samples[i].splat = trace_half(job, halves.samples[i].sample, scratch);
+  // W learns from as many subpaths as Q does.
+  const uint32_t recorded =
+      job.learning ? std::max(recorded_one_in(*job.learning, film) / job.pixels_per_light, 1u) : 1;
+  for (size_t i = 0; i < count; i += n)
+    halves.samples[i].splat = trace_half(job, halves.samples[i].sample, recorded, scratch);
   if (job.guided) prefer(halves.store, number_of(job, film, chunk));
   finish(halves.store, job.walk.inner_share);
 }

@@ -1,5 +1,7 @@
 #include "ajar/render/learning.h"
 
+#include <algorithm>
+
 #include "ajar/core/sampler.h"
 
 namespace ajar {
@@ -14,6 +16,18 @@ bool is_frozen(const Learning& l) { return l.train > 0 && !is_young(l); }
 // Passes from one lesson to the next.
 uint32_t interval(const Learning& l) {
   return is_young(l) ? l.lesson : rare_records << std::min(l.fields.generation - young_generations, 6u);
+}
+
+// Of how many pixels one is traced in the first two passes and in the other blind ones, and how many of the paths of
+// those that follow are recorded: so many pixels that enough are left, as far as that is possible.
+struct YoungShares {
+  uint32_t first, later, recorded;
+};
+
+YoungShares young_shares(size_t pixels) {
+  const auto one_in = [&](size_t least, size_t most) { return uint32_t(std::clamp<size_t>(pixels / least, 1, most)); };
+  const uint32_t first = one_in(4096, 16);
+  return {first, first == 1 ? 1 : std::max(first / 2, 2u), one_in(16384, rare_records)};
 }
 
 }  // namespace
@@ -54,19 +68,30 @@ void end_training(Learning& l) {
 }
 
 uint32_t traced_one_in(const Learning& l, const Film& film) {
-  constexpr uint32_t most[blind_generations] = {4, 4, 2, 2};
-  constexpr size_t least_pixels = 4096;
   if (l.train > 0 || l.lesson > 1 || l.fields.generation >= blind_generations) return 1;
-  return std::min(most[l.fields.generation], uint32_t(std::max<size_t>(film.pixels() / least_pixels, 1)));
+  const YoungShares shares = young_shares(film.pixels());
+  return l.fields.generation < blind_generations / 2 ? shares.first : shares.later;
+}
+
+uint32_t recorded_one_in(const Learning& l, const Film& film) {
+  if (!is_young(l)) return rare_records;
+  return l.train > 0 || l.fields.generation < blind_generations ? 1 : young_shares(film.pixels()).recorded;
+}
+
+double passes_lost(size_t pixels) {
+  constexpr double blind = blind_generations / 2, others = young_generations - blind_generations;
+  const YoungShares one_in = young_shares(pixels);
+  return 2 * (blind / one_in.first + blind / one_in.later) + others / one_in.recorded;
 }
 
 bool is_recorded(const Learning& learning, uint64_t pixel, uint32_t pass, uint32_t one_in) {
-  return is_young(learning) || (!is_frozen(learning) && hash(pixel, pass) % one_in == 0);
+  return !is_frozen(learning) && hash(pixel, pass) % one_in == 0;
 }
 
 void end_pass(const Scene& scene, Learning& l, const LearnOptions& options, Film& film) {
   if (is_frozen(l) || ++l.passes < interval(l)) return;
-  const double paths = double(film.pixels()) * l.passes / (is_young(l) ? traced_one_in(l, film) : rare_records);
+  const uint32_t traced = options.guided == Guided::neither ? 1 : traced_one_in(l, film);
+  const double paths = double(film.pixels()) * l.passes / (traced * recorded_one_in(l, film));
   l.fields = learn(l.fields, l.training, l.sightings, paths, options, &scene.light_tree);
   l.training = start_training(l.fields);
   l.sightings.clear();

@@ -150,8 +150,12 @@ double time_to(double noise, double pixels, const Plan& plan) {
   return least * 1e-6 * pixels / noise;
 }
 
-// Factor on the time to equal error, of so many passes as the budget pays for those that are dropped.
-double waste_of(double passes) { return passes > blind_generations ? passes / (passes - blind_generations) : infinity; }
+// Factor on the time to equal error, of so many passes as the budget pays for. Small images lose more than
+// blind_generations, but what their fields go on to learn makes up for it.
+double waste_of(double passes, double pixels) {
+  const double lost = std::min(passes_lost(size_t(pixels)), double(blind_generations));
+  return passes > lost ? passes / (passes - lost) : infinity;
+}
 
 // All trials at the size that the budget allows, the camera's left as it was; false where that is too small.
 bool run_pilot(Scene& scene, const Accel& accel, const RenderOptions& options, double budget, const Monitor& monitor,
@@ -177,7 +181,7 @@ bool run_pilot(Scene& scene, const Accel& accel, const RenderOptions& options, d
   for (size_t i = 0; i < sights.size(); ++i) {
     Trial& t = plan.trials[i];
     t.error = judgements[i].error, t.deviation = judgements[i].deviation, t.unseen = judgements[i].unseen;
-    if (candidates[i].guided) t.waste = waste_of(budget * 1e6 / (pixels * t.cost));
+    if (candidates[i].guided) t.waste = waste_of(budget * 1e6 / (pixels * t.cost), pixels);
   }
   return true;
 }

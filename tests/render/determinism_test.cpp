@@ -279,6 +279,36 @@ TEST(Determinism, LightSubpathsAreAsManyAsNoiseAsksFor) {
   EXPECT_EQ(rendered(rooms, Accel(rooms), options_of("guided-bdpt", 9)).pixels_per_light, RenderState::most_light);
 }
 
+// What young fields need is so many paths, however many pixels there are.
+TEST(Determinism, LargeImagesAreTaughtByASmallShareOfTheirPixels) {
+  const auto shares = [](int width, int height, uint32_t train = 0) {
+    Scene scene = stage(8);
+    Camera& c = scene.camera;
+    c.width = c.crop_width = width, c.height = c.crop_height = height;
+    finish(scene);
+    LearnOptions options;
+    options.train = train;
+    const Film film = make_film(c, scene.filter, true);
+    Learning learning = start_learning(scene, film, options);
+    std::vector<std::pair<uint32_t, uint32_t>> out;
+    for (uint32_t generation : {0u, 1u, 2u, 3u, 4u, 7u, 8u}) {
+      learning.fields.generation = generation;
+      out.emplace_back(traced_one_in(learning, film), recorded_one_in(learning, film));
+    }
+    return out;
+  };
+  using Shares = std::vector<std::pair<uint32_t, uint32_t>>;
+  EXPECT_EQ(shares(64, 64), (Shares{{1, 1}, {1, 1}, {1, 1}, {1, 1}, {1, 1}, {1, 1}, {1, 8}}));
+  // Where few pixels are traced at first, few are until the first passes are dropped: none of them is an image.
+  EXPECT_EQ(shares(128, 64), (Shares{{2, 1}, {2, 1}, {2, 1}, {2, 1}, {1, 1}, {1, 1}, {1, 8}}));
+  EXPECT_EQ(shares(256, 256), (Shares{{16, 1}, {16, 1}, {8, 1}, {8, 1}, {1, 4}, {1, 4}, {1, 8}}));
+  EXPECT_EQ(shares(1024, 1024), (Shares{{16, 1}, {16, 1}, {8, 1}, {8, 1}, {1, 8}, {1, 8}, {1, 8}}));
+  EXPECT_EQ(passes_lost(64 * 64), 12);
+  EXPECT_EQ(passes_lost(256 * 256), 1.75);
+  EXPECT_EQ(passes_lost(1024 * 1024), 1.25);
+  for (const auto& [traced, recorded] : shares(256, 256, 8)) EXPECT_EQ(traced, 1u) << "training is what it says";
+}
+
 TEST(Determinism, StoredFieldsSpareTheYoungPasses) {
   const Scene scene = strip(false);
   const Accel accel(scene);

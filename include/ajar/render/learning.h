@@ -19,9 +19,9 @@ struct Learning {
   uint32_t first = 0;   ///< number of the render's first pass; even; not 0 where it goes on from stored fields
 };
 
-/// After each of the first passes, young_generations of them, the fields are learned from all paths; from then on one
-/// path in rare_records is recorded, and passes between lessons double. What the first blind_generations saw, through
-/// fields that knew next to nothing, is dropped from the image.
+/// After each of the first passes, young_generations of them, the fields are learned; from then on one path in
+/// rare_records is recorded, and passes between lessons double. What the first blind_generations saw, through fields
+/// that knew next to nothing, is dropped from the image.
 inline constexpr uint32_t young_generations = 8, blind_generations = 4, rare_records = 8;
 
 Learning start_learning(const Scene& scene, const Film& film, const LearnOptions& options);
@@ -39,7 +39,13 @@ void end_training(Learning& learning);
 /// One pixel in so many is traced in the pass at hand. What blind passes find is not for the image, and the first
 /// lessons need less than all pixels of a large one.
 uint32_t traced_one_in(const Learning& learning, const Film& film);
-/// Whether the subpaths of this pixel are recorded in this pass: all as long as fields are young, then one in so many.
+/// One path in so many is recorded in the pass at hand: how much young fields need is the scene's affair, not that of
+/// the number of pixels.
+uint32_t recorded_one_in(const Learning& learning, const Film& film);
+/// What young fields cost a render that learns all along, in passes: those that are dropped, and recording, which takes
+/// about as long as the path itself.
+double passes_lost(size_t pixels);
+/// Whether the subpaths of this pixel are recorded in this pass, one in so many.
 bool is_recorded(const Learning& learning, uint64_t pixel, uint32_t pass, uint32_t one_in);
 /// Call after every finished pass. Drops the blind passes from the film when the time has come.
 void end_pass(const Scene& scene, Learning& learning, const LearnOptions& options, Film& film);
