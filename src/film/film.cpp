@@ -4,11 +4,16 @@
 #include <numeric>
 
 #include "ajar/core/parallel.h"
+#include "ajar/core/sampler.h"
 
 namespace ajar {
 namespace {
 
-bool is_done(const Film& film, int x, int y) { return uint32_t((y / tile) * tiles_x(film) + x / tile) < film.chunks; }
+bool is_done(const Film& film, const glm::ivec2& shift, int x, int y) {
+  const int column = (x + film.width - shift.x) % film.width / tile;
+  const int row = (y + film.height - shift.y) % film.height / tile;
+  return uint32_t(row * tiles_x(film) + column) < film.chunks;
+}
 
 // Share of the pass at work whose light subpaths are in.
 double share_done(const Film& film) {
@@ -80,6 +85,11 @@ double pixel_error(const Film& film, const std::vector<glm::dvec3>& mean, double
 
 }  // namespace
 
+glm::ivec2 tile_shift(const Film& film) {
+  const uint64_t h = hash(0x711e, film.dropped + film.passes);
+  return {int(h % tile) % film.width, int((h >> 32) % tile) % film.height};
+}
+
 Film make_film(const Camera& camera, const Filter& filter, bool splats) {
   Film film;
   film.x0 = camera.crop_x, film.y0 = camera.crop_y;
@@ -138,10 +148,11 @@ void finish_pass(Film& film) {
 Picture develop(const Film& film) {
   Picture out{film.width, film.height, {"R", "G", "B"}, std::vector<float>(3 * film.pixels())};
   const double share = share_done(film), per_path = 1.0 / double(film.pixels());
+  const glm::ivec2 shift = tile_shift(film);
   for (int y = 0; y < film.height; ++y)
     for (int x = 0; x < film.width; ++x) {
       const size_t i = size_t(y) * film.width + x;
-      const bool done = is_done(film, x, y);
+      const bool done = is_done(film, shift, x, y);
       glm::dvec3 value(0);
       const double n = film.passes + (done ? 1.0 : 0.0);
       if (n > 0) value += (film.camera_sum[i] + (done ? glm::dvec3(film.camera[i]) : glm::dvec3(0))) / n;

@@ -66,12 +66,15 @@ void trace_light_halves(const Job& job, Film& film, uint32_t chunk, Scratch& scr
   Halves& halves = *scratch.halves;
   scratch.rejected_at = Scratch::no_path;
   halves.samples.clear();
-  for (int y = y0; y < y1; ++y)
-    for (int x = x0; x < x1; ++x)
+  const glm::ivec2 shift = tile_shift(film);
+  for (int row = y0; row < y1; ++row)
+    for (int column = x0; column < x1; ++column) {
+      const int x = (column + shift.x) % film.width, y = (row + shift.y) % film.height;
       if (is_traced(job, film, x, y))
         halves.samples.push_back({make_sample(job, film, x, y)});
       else
         film.camera[index_of(film, x, y)] = Rgb(0);
+    }
   clear(halves.store);
   halves.photons.clear(), halves.few.clear();
   const size_t count = halves.samples.size(), n = job.pixels_per_light;

@@ -181,6 +181,36 @@ TEST(Determinism, GoingOnIsTheStraightRun) {
   }
 }
 
+// The grid of tiles lies elsewhere in every pass, round the film's edges; what a pass has not come to shows the passes
+// before it.
+TEST(Determinism, TilesMoveFromPassToPass) {
+  Scene scene = strip(true);
+  set_camera(scene, {0, 0, 2}, {0, 0, 0}, 36, 4112, 2);  // sees walls alone
+  finish(scene);
+  const Accel accel(scene);
+  const RenderOptions o = options_of("path", 2);
+  const std::vector<float> one = develop(rendered(scene, accel, options_of("path", 1)).film).pixels;
+  const RenderState both = rendered(scene, accel, o);
+  const std::vector<float> two = develop(both.film).pixels;
+  RenderState amid = start_render(scene, o);
+  render(scene, accel, o, amid, [](const RenderState& s) { return s.film.passes == 0 || s.film.chunks == 0; });
+  ASSERT_EQ(amid.film.chunks, 256u);
+  const std::vector<float> now = develop(amid.film).pixels;
+  size_t open = 0;
+  for (size_t i = 0; i < now.size(); ++i) {
+    EXPECT_TRUE(now[i] == one[i] || now[i] == two[i]);
+    open += now[i] == one[i] && now[i] != two[i];
+  }
+  EXPECT_GT(open, 3u * 16) << "some of a tile of 16x2 pixels see the same twice";
+  EXPECT_LE(open, 3u * 32);
+  Film film = both.film;
+  std::vector<int> places;
+  for (film.passes = 0; film.passes < 64; ++film.passes) places.push_back(tile_shift(film).x);
+  std::sort(places.begin(), places.end());
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+  EXPECT_GT(places.size(), 12u) << "of 16";
+}
+
 // Time budgets cut passes into other batches: first a few tiles, then what the rest of the time suffices for.
 TEST(Determinism, TimeDoesNotMatter) {
   const Scene scene = strip(true);

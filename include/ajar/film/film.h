@@ -41,6 +41,9 @@ inline int tiles_x(const Film& film) { return (film.width + tile - 1) / tile; }
 inline uint32_t chunk_count(const Film& film) {
   return uint32_t(tiles_x(film)) * uint32_t((film.height + tile - 1) / tile);
 }
+/// The grid of tiles in the pass at work lies so far to the right and below, round the film's edges: another place in
+/// every pass, since what the samples of a tile have in common would show as squares.
+glm::ivec2 tile_shift(const Film& film);
 /// Samples per pixel, with the part of the pass at work.
 inline double spp_of(const Film& film) { return film.passes + double(film.chunks) / chunk_count(film); }
 
