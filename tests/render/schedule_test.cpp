@@ -1,0 +1,170 @@
+// What is traced, recorded and dropped when, what guides, and when a render ends.
+#include <algorithm>
+
+#include "bytes.h"
+
+namespace ajar {
+namespace {
+
+using namespace kit;
+
+// Quiet images need few light subpaths, whatever the unit of light; those that are young, or that teach, all of them.
+TEST(Determinism, LightSubpathsAreAsManyAsNoiseAsksFor) {
+  for (const float factor : {1.0f, 1e-6f, 1e6f}) {
+    Scene scene = stage(32);
+    scene.lights[0].radiance.value *= factor;
+    finish(scene);
+    const Accel accel(scene);
+    RenderOptions o = options_of("guided-bdpt", 8);
+    RenderState state = rendered(scene, accel, o);
+    const double pixels = double(state.film.pixels()), young = pixels * blind_generations;
+    EXPECT_EQ(state.pixels_per_light, RenderState::most_light) << factor << ", not looked at yet";
+    EXPECT_NEAR(double(state.stats.counters.light_paths), young + 8 * pixels / 2, 0.02 * young);
+    o.spp = 9;
+    render(scene, accel, o, state, {});
+    EXPECT_EQ(state.pixels_per_light, RenderState::least_light) << factor;
+    EXPECT_NEAR(double(state.stats.counters.light_paths), young + 8 * pixels / 2 + pixels / 4, 0.02 * young);
+  }
+  const Scene rooms = two_rooms(5);
+  EXPECT_EQ(rendered(rooms, Accel(rooms), options_of("guided-bdpt", 9)).pixels_per_light, RenderState::most_light);
+}
+
+// What young fields need is so many paths, however many pixels there are.
+TEST(Determinism, LargeImagesAreTaughtByASmallShareOfTheirPixels) {
+  const auto shares = [](int width, int height, uint32_t train = 0) {
+    Scene scene = stage(8);
+    Camera& c = scene.camera;
+    c.width = c.crop_width = width, c.height = c.crop_height = height;
+    finish(scene);
+    LearnOptions options;
+    options.train = train;
+    const Film film = make_film(c, scene.filter, true);
+    Learning learning = start_learning(scene, film, options);
+    std::vector<std::pair<uint32_t, uint32_t>> out;
+    for (uint32_t generation : {0u, 1u, 2u, 3u, 4u, 7u, 8u}) {
+      learning.fields.generation = generation;
+      out.emplace_back(traced_one_in(learning, film), recorded_one_in(learning, film));
+    }
+    return out;
+  };
+  using Shares = std::vector<std::pair<uint32_t, uint32_t>>;
+  EXPECT_EQ(shares(64, 64), (Shares{{1, 1}, {1, 1}, {1, 1}, {1, 1}, {1, 1}, {1, 1}, {1, 8}}));
+  // Where few pixels are traced at first, few are until the first passes are dropped: none of them is an image.
+  EXPECT_EQ(shares(128, 64), (Shares{{2, 1}, {2, 1}, {2, 1}, {2, 1}, {1, 1}, {1, 1}, {1, 8}}));
+  EXPECT_EQ(shares(256, 256), (Shares{{16, 1}, {16, 1}, {8, 1}, {8, 1}, {1, 4}, {1, 4}, {1, 8}}));
+  EXPECT_EQ(shares(1024, 1024), (Shares{{16, 1}, {16, 1}, {8, 1}, {8, 1}, {1, 8}, {1, 8}, {1, 8}}));
+  EXPECT_EQ(passes_lost(64 * 64), 12);
+  EXPECT_EQ(passes_lost(256 * 256), 1.75);
+  EXPECT_EQ(passes_lost(1024 * 1024), 1.25);
+  for (const auto& [traced, recorded] : shares(256, 256, 8)) EXPECT_EQ(traced, 1u) << "training is what it says";
+}
+
+TEST(Determinism, StoredFieldsSpareTheYoungPasses) {
+  const Scene scene = strip(false);
+  const Accel accel(scene);
+  const RenderOptions o = options_of("guided-bdpt", 9);
+  const RenderState first = rendered(scene, accel, o);
+  const File file("ajar_fields");
+  save_fields(file.path, stored_fields(scene, first.learning, first.film));
+  RenderState second = start_render(scene, o);
+  go_on_from(load_fields(file.path, scene_key(scene)), o.learn, second.learning, second.film);
+  expect_same_field(first.learning.fields.q, second.learning.fields.q);
+  expect_same_field(first.learning.fields.w, second.learning.fields.w);
+  expect_same_views(first.learning.fields, second.learning.fields);
+  render(scene, accel, o, second, always);
+  EXPECT_EQ(second.film.passes, 9u);
+  EXPECT_EQ(dropped_passes(second.learning, second.film), 0u);
+  EXPECT_EQ(dropped_passes(first.learning, first.film), blind_generations);
+  EXPECT_GE(second.film.dropped, first.film.dropped + first.film.passes) << "no pass number is drawn from twice";
+  EXPECT_EQ(second.film.dropped % 2, 0u);
+  EXPECT_FALSE(same_bytes(develop(first.film).pixels, develop(second.film).pixels));
+  // From young fields the render goes on being young, and drops what is left of it.
+  RenderState young = start_render(scene, o);
+  int passes = 0;
+  render(scene, accel, o, young, [&](const RenderState&) { return ++passes < 3; });
+  RenderState third = start_render(scene, o);
+  go_on_from(stored_fields(scene, young.learning, young.film), o.learn, third.learning, third.film);
+  render(scene, accel, o, third, always);
+  EXPECT_EQ(dropped_passes(third.learning, third.film), blind_generations - 3);
+}
+
+TEST(Determinism, FieldsGuideTheSideThatIsAskedFor) {
+  const Scene scene = strip(false);
+  const Accel accel(scene);
+  RenderOptions o = options_of("guided-bdpt", 9);
+  const auto guides = [](const Field& f) {
+    return std::any_of(f.cells.begin(), f.cells.end(), [](const FieldCell& c) { return c.mix > 0; });
+  };
+  const RenderState both = rendered(scene, accel, o);
+  EXPECT_TRUE(guides(both.learning.fields.q) && guides(both.learning.fields.w));
+  for (const Guided side : {Guided::camera, Guided::light}) {
+    o.learn.guided = side;
+    const RenderState one = rendered(scene, accel, o);
+    EXPECT_EQ(guides(one.learning.fields.q), side == Guided::camera);
+    EXPECT_EQ(guides(one.learning.fields.w), side == Guided::light);
+    RenderState loaded = start_render(scene, o);
+    go_on_from(stored_fields(scene, both.learning, both.film), o.learn, loaded.learning, loaded.film);
+    EXPECT_EQ(guides(loaded.learning.fields.q), side == Guided::camera);
+    EXPECT_EQ(guides(loaded.learning.fields.w), side == Guided::light);
+  }
+}
+
+TEST(Determinism, NoiseStopsAtTheSamePassWithAnyThreads) {
+  const Scene scene = strip(false);
+  const Accel accel(scene);
+  RenderOptions o = options_of("path", 0);
+  o.noise = 0.05, o.threads = 1;
+  const RenderState one = rendered(scene, accel, o);
+  EXPECT_LE(estimated_error(one.film), o.noise);
+  EXPECT_GE(one.film.passes, 8u);
+  o.threads = 3;
+  expect_same_bytes(one, rendered(scene, accel, o));
+  // The pass where it stopped was the first look at which the target was reached.
+  RenderOptions straight = options_of("path", one.film.passes);
+  std::vector<uint32_t> reached;
+  RenderState state = start_render(scene, straight);
+  render(scene, accel, straight, state, [&](const RenderState& s) {
+    const uint32_t n = s.film.passes, step = n < 32 ? 2 : n < 64 ? 4 : n < 128 ? 8 : 16;
+    if (n >= 8 && n % step == 0 && estimated_error(s.film) <= o.noise) reached.push_back(n);
+    return true;
+  });
+  EXPECT_EQ(reached, std::vector{one.film.passes});
+  expect_same_bytes(one, state);
+}
+
+TEST(Determinism, NoiseStopsAtTheSamePassAfterStops) {
+  const Scene scene = strip(false);
+  const Accel accel(scene);
+  RenderOptions o = options_of("bdpt", 0);
+  o.noise = 0.04;
+  const RenderState straight = rendered(scene, accel, o);
+  const File file("ajar_noise");
+  RenderState state = start_render(scene, o);
+  uint32_t before = 0;
+  do {  // two passes at a time, each from a checkpoint
+    before = state.film.passes;
+    int looks = 0;
+    render(scene, accel, o, state, [&](const RenderState&) { return ++looks < 2; });
+    save_checkpoint(file.path, "key", state);
+    state = start_render(scene, o);
+    load_checkpoint(file.path, "key", state);
+  } while (state.film.passes > before);
+  expect_same_bytes(straight, state);
+}
+
+TEST(Determinism, NoiseKeepsToTheLimits) {
+  const Scene scene = strip(false);
+  const Accel accel(scene);
+  RenderOptions o = options_of("path", 5);
+  o.noise = 1e-9;
+  EXPECT_EQ(rendered(scene, accel, o).film.passes, 5u);
+  o.seconds = 1e-6;
+  EXPECT_LE(rendered(scene, accel, o).film.passes, 1u) << "time is looked at too";
+  o.seconds = 1e6;
+  EXPECT_EQ(rendered(scene, accel, o).film.passes, 5u);
+  o.seconds = 0, o.spp = 1000, o.noise = 1e9;
+  EXPECT_EQ(rendered(scene, accel, o).film.passes, 8u) << "not before 8 passes, however well it looks";
+}
+
+}  // namespace
+}  // namespace ajar
