@@ -22,6 +22,9 @@ glm::uvec3 coordinates_of(CellKey key) {
   return {key & most_coordinate, (key >> bits) & most_coordinate, (key >> 2 * bits) & most_coordinate};
 }
 
+// Normal's bin and compartment, as make_key has them: the same for a cell's parts.
+uint32_t kind_of(CellKey key) { return uint32_t(key >> at_normal) & 511; }
+
 // Where a key is among the slots, or the free slot where it would be.
 size_t slot_of(const CellTable& table, CellKey key) {
   const size_t mask = table.slots.size() - 1;
@@ -192,7 +195,7 @@ void set_divided(CellTable& table, CellKey key) {
   const glm::uvec3 first = coordinates_of(key) << 1u;
   for (uint32_t i = 0; i < 8; ++i) {
     const glm::uvec3 c = first + glm::uvec3(i & 1, i >> 1 & 1, i >> 2);
-    const CellTable::Slot* slot = find_slot(table, make_key(level_of(key) + 1, uint32_t(key >> at_normal) & 511, c));
+    const CellTable::Slot* slot = find_slot(table, make_key(level_of(key) + 1, kind_of(key), c));
     if (slot) parts[i] = slot->at;
   }
   if (CellTable::Part* entry = entry_in_parent(table, key)) entry->parts = at.parts;
@@ -220,7 +223,7 @@ CellKey parent_of(CellKey key) {
   const int level = level_of(key);
   if (level <= 0) return 0;
   const glm::uvec3 c = coordinates_of(key);
-  return make_key(level - 1, uint32_t(key >> at_normal) & 511, c >> 1u);
+  return make_key(level - 1, kind_of(key), c >> 1u);
 }
 
 }  // namespace ajar
