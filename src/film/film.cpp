@@ -20,10 +20,7 @@ double share_done(const Film& film) {
   const uint32_t n = chunk_count(film);
   if (film.chunks == 0 || film.chunks == n) return film.chunks == 0 ? 0 : 1;
   size_t done = 0;
-  for (uint32_t i = 0; i < film.chunks; ++i) {
-    const int x = int(i) % tiles_x(film) * tile, y = int(i) / tiles_x(film) * tile;
-    done += size_t(std::min(tile, film.width - x)) * size_t(std::min(tile, film.height - y));
-  }
+  for (uint32_t i = 0; i < film.chunks; ++i) done += tile_bounds(film, i).pixels();
   return double(done) / double(film.pixels());
 }
 

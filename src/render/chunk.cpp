@@ -61,14 +61,13 @@ float number_of(const Job& job, const Film& film, uint32_t chunk) {
 }  // namespace
 
 void trace_light_halves(const Job& job, Film& film, uint32_t chunk, Scratch& scratch) {
-  const int x0 = int(chunk) % tiles_x(film) * tile, y0 = int(chunk) / tiles_x(film) * tile;
-  const int x1 = std::min(x0 + tile, film.width), y1 = std::min(y0 + tile, film.height);
+  const TileBounds bounds = tile_bounds(film, chunk);
   Halves& halves = *scratch.halves;
   scratch.rejected_at = Scratch::no_path;
   halves.samples.clear();
   const glm::ivec2 shift = tile_shift(film);
-  for (int row = y0; row < y1; ++row)
-    for (int column = x0; column < x1; ++column) {
+  for (int row = bounds.y0; row < bounds.y1; ++row)
+    for (int column = bounds.x0; column < bounds.x1; ++column) {
       const int x = (column + shift.x) % film.width, y = (row + shift.y) % film.height;
       if (is_traced(job, film, x, y))
         halves.samples.push_back({make_sample(job, film, x, y)});

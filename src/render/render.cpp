@@ -137,11 +137,8 @@ uint32_t equal_chunks(uint32_t all) {
 // Light subpaths of chunks from .. from + count - 1.
 double light_paths_of(const Film& film, uint32_t from, uint32_t count, uint32_t pixels_per_light) {
   double sum = 0;
-  for (uint32_t chunk = from; chunk < from + count; ++chunk) {
-    const int x0 = int(chunk) % tiles_x(film) * tile, y0 = int(chunk) / tiles_x(film) * tile;
-    const int pixels = std::min(tile, film.width - x0) * std::min(tile, film.height - y0);
-    sum += (uint32_t(pixels) + pixels_per_light - 1) / pixels_per_light;
-  }
+  for (uint32_t chunk = from; chunk < from + count; ++chunk)
+    sum += (uint32_t(tile_bounds(film, chunk).pixels()) + pixels_per_light - 1) / pixels_per_light;
   return sum;
 }
 

@@ -2,6 +2,7 @@
 // Leaves: the running estimate with its variance. A pass is one sample of every pixel and as many light subpaths.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -40,6 +41,15 @@ inline constexpr int tile = 16;
 inline int tiles_x(const Film& film) { return (film.width + tile - 1) / tile; }
 inline uint32_t chunk_count(const Film& film) {
   return uint32_t(tiles_x(film)) * uint32_t((film.height + tile - 1) / tile);
+}
+/// Columns and rows of a tile, before the grid is moved.
+struct TileBounds {
+  int x0, y0, x1, y1;
+  size_t pixels() const { return size_t(x1 - x0) * size_t(y1 - y0); }
+};
+inline TileBounds tile_bounds(const Film& film, uint32_t chunk) {
+  const int x = int(chunk) % tiles_x(film) * tile, y = int(chunk) / tiles_x(film) * tile;
+  return {x, y, std::min(x + tile, film.width), std::min(y + tile, film.height)};
 }
 /// The grid of tiles in the pass at work lies so far to the right and below, round the film's edges: another place in
 /// every pass, since what the samples of a tile have in common would show as squares.
