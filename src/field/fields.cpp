@@ -60,10 +60,11 @@ size_t find_stratum(const Fields& fields, const Field& field, uint32_t cell, con
 
 size_t find_stratum(const Field& field, const FieldCell& cell, Vec2 at) {
   uint32_t node = cell.root;
-  int i = descend(at);
+  Descent down(at);
+  int i = down.next();
   while (field.nodes[node].is_divided(i)) {
     node = field.nodes[node].child(i);
-    i = descend(at);
+    i = down.next();
   }
   return 16 * size_t(node) + size_t(i);
 }

@@ -24,9 +24,9 @@ int choose(const StrataNode& node, double& x, float& share) {
 
 float density(const std::vector<StrataNode>& nodes, uint32_t root, const Vec2& at) {
   float d = 1;
-  Vec2 inside = at;
+  Descent down(at);
   for (const StrataNode* node = &nodes[root];;) {
-    const int i = descend(inside);
+    const int i = down.next();
     d *= float(node->steps(i)) * 0x1p-12f;
     if (!node->is_divided(i)) return d;
     node = &nodes[node->child(i)];

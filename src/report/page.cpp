@@ -9,6 +9,8 @@
 
 #include "ajar/core/error.h"
 #include "ajar/film/picture.h"
+#include "ajar/report/curves.h"
+#include "markup.h"
 #include "pack.h"
 #include "page_parts.h"
 #include "planes.h"
@@ -141,19 +143,6 @@ std::string inline_json(const json& value) {
   return out;
 }
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '<')
-      out += "&lt;";
-    else if (c == '&')
-      out += "&amp;";
-    else
-      out += c;
-  }
-  return out;
-}
-
 /// Replaces each "{{NAME}}" of the text once; what is put in is not looked at again.
 std::string filled(std::string_view text, const std::map<std::string, std::string, std::less<>>& parts) {
   std::string out;
@@ -172,13 +161,14 @@ std::string filled(std::string_view text, const std::map<std::string, std::strin
 void write_report(const json& results, const std::filesystem::path& dir) {
   const std::string file = (dir / "results.json").string();
   Embedded embedded;
-  std::string title;
+  std::string title, curves;
   try {
     if (const json& format = results.at("format"); format != 1)
       throw Error(fmt::format("{}: format is {}, this version reads 1; use the version that wrote it, {}", file,
                               format.dump(), results.value("version", "which it does not name")));
     title = results.value("title", "");
     embedded = embed(results, dir);
+    curves = curves_svg(results);
   } catch (const json::exception& error) {
     throw Error(fmt::format("{}: is not what a bench writes ({}); run the bench again", file, error.what()));
   }
@@ -189,6 +179,7 @@ void write_report(const json& results, const std::filesystem::path& dir) {
                                  {"files", inline_json(embedded.index)},
                                  {"images", embedded.elements},
                                  {"script", fmt::format("{}", fmt::join(page::scripts, ""))}}));
+  if (!curves.empty()) write_text((dir / "curves.svg").string(), curves);
 }
 
 json read_results(const std::filesystem::path& dir) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "markup.h"
 #include "planes.h"
 
 namespace ajar {
@@ -27,12 +28,6 @@ std::string cell(double x) { return std::isnan(x) ? "" : fmt::format("{}", x); }
 
 // Quoted where a list of numbers would fall apart.
 std::string cell(const std::string& text) { return text.find(',') == text.npos ? text : '"' + text + '"'; }
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) out += c == '<' ? "&lt;" : c == '&' ? "&amp;" : std::string(1, c);
-  return out;
-}
 
 // One panel of a plot: a figure over frames, logarithmic.
 struct Panel {

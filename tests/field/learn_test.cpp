@@ -123,9 +123,9 @@ TEST(Learn, SharesAreProjectedSolidAngleTimesMean) {
   const int n = 400;
   for (int y = 0; y < n; ++y)
     for (int x = 0; x < n; ++x) {
-      Vec2 at((float(x) + 0.5f) / n, (float(y) + 0.5f) / n);
+      const Vec2 at((float(x) + 0.5f) / n, (float(y) + 0.5f) / n);
       const Vec3 w = from_square(at);
-      area[descend(at)] += double(w.z / square_density(w)) / (double(n) * n);
+      area[Descent(at).next()] += double(w.z / square_density(w)) / (double(n) * n);
     }
   for (int i = 0; i < 16; ++i) bare += area[i] * (i == 6 ? 4 : 1);
   const double floor = 0.03 * bare / std::numbers::pi;  // 3 % of the mean are everywhere
@@ -199,9 +199,9 @@ TEST(Learn, DivisionEndsAtTheLastLevel) {
     f = lesson.learned();
   }
   int levels = 1;
-  Vec2 at = to_square(towards(6, {0.3f, 0.7f}));
+  Descent down(to_square(towards(6, {0.3f, 0.7f})));
   uint32_t node = f.q.cells[0].root;
-  for (int i = descend(at); f.q.nodes[node].is_divided(i); i = descend(at), ++levels) node = f.q.nodes[node].child(i);
+  for (int i = down.next(); f.q.nodes[node].is_divided(i); i = down.next(), ++levels) node = f.q.nodes[node].child(i);
   EXPECT_EQ(levels, most_levels);
 }
 

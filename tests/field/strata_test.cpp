@@ -193,8 +193,8 @@ TEST(Strata, EveryStepIsReached) {
   int found[16] = {};
   for (int i = 0; i < 65536; ++i) {
     float d;
-    Vec2 at = sample(nodes, 0, {(float(i) + 0.5f) / 65536, 0.5f}, d);
-    ++found[descend(at)];
+    const Vec2 at = sample(nodes, 0, {(float(i) + 0.5f) / 65536, 0.5f}, d);
+    ++found[Descent(at).next()];
   }
   for (int i = 0; i < 16; ++i) EXPECT_EQ(found[i], i == 9 ? 65521 : 1) << i;
 }

@@ -89,12 +89,20 @@ float disk_density(const std::vector<StrataNode>& nodes, uint32_t root, const Ve
 /// Draws a point of the unit square; u in [0,1)^2. Leaves its density.
 Vec2 sample(const std::vector<StrataNode>& nodes, uint32_t root, const Vec2& u, float& density);
 
-/// Stratum of a point and the point within it, one level down.
-inline int descend(Vec2& at) {
-  at *= 4.0f;
-  const int x = int(at.x), y = int(at.y);
-  at -= Vec2(x, y);
-  return 4 * y + x;
-}
+/// Strata that a point of the unit square is in, from the root down.
+class Descent {
+ public:
+  explicit Descent(const Vec2& at) : x_(uint32_t(at.x * finest)), y_(uint32_t(at.y * finest)) {}
+  /// Stratum at the next level; most_levels times at most.
+  int next() {
+    shift_ -= 2;
+    return int((y_ >> shift_ & 3) << 2 | (x_ >> shift_ & 3));
+  }
+
+ private:
+  static constexpr float finest = 1 << 2 * most_levels;  // strata of the last level along an edge
+  uint32_t x_, y_;
+  int shift_ = 2 * most_levels;
+};
 
 }  // namespace ajar

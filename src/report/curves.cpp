@@ -1,0 +1,205 @@
+#include "ajar/report/curves.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "ajar/report/statistics.h"
+#include "markup.h"
+
+namespace ajar {
+namespace {
+
+using nlohmann::json;
+
+// Those of the page (report.css) on white.
+constexpr const char* colours[] = {"#0072b2", "#d55e00", "#00895f", "#b0478c",
+                                   "#8a6d00", "#2f9bd6", "#6a4fb3", "#4d5560"};
+
+struct Point {
+  double time;
+  Spread error;
+};
+/// What the seeds of a method have in common.
+struct Line {
+  std::string name;
+  const char* colour;
+  bool one_seed;
+  std::vector<Point> points;
+};
+
+Curve curve_of(const json& run, const char* clock) {
+  Curve curve;
+  for (const json& s : run.at("samples")) {
+    const double time = s.at(clock), error = s.at("relmse_trimmed");
+    if (time > 0 && error > 0) curve.push_back({time, error, s.at("spp")});
+  }
+  return curve;
+}
+
+// Over the times that all curves cover: ends of that range, and the first curve's samples in between.
+std::vector<Point> common(const std::vector<Curve>& curves) {
+  double from = 0, to = INFINITY;
+  for (const Curve& c : curves) from = std::max(from, c.front().time), to = std::min(to, c.back().time);
+  std::vector<double> times = {from};
+  for (const CurvePoint& p : curves[0])
+    if (p.time > from && p.time < to) times.push_back(p.time);
+  if (to > from) times.push_back(to);
+  std::vector<Point> points;
+  for (const double t : times) {
+    std::vector<double> errors;
+    for (const Curve& c : curves)
+      if (const auto e = error_at(c, t)) errors.push_back(*e);
+    if (const auto s = spread(errors)) points.push_back({t, *s});
+  }
+  return points;
+}
+
+std::vector<Line> lines_of(const json& scene, const char* clock, std::vector<std::string>& names) {
+  std::vector<Line> lines;
+  for (const json& method : scene.value("methods", json::array())) {
+    std::vector<Curve> curves;
+    for (const json& run : method.at("runs"))
+      if (Curve c = curve_of(run, clock); !c.empty()) curves.push_back(std::move(c));
+    if (curves.empty()) continue;
+    const std::string name = method.at("name");
+    const size_t at = size_t(std::find(names.begin(), names.end(), name) - names.begin());
+    if (at == names.size()) names.push_back(name);
+    lines.push_back({name, colours[at % std::size(colours)], curves.size() == 1, common(curves)});
+  }
+  return lines;
+}
+
+/// A logarithmic axis: values low and high are at pixels from and to.
+struct Axis {
+  double low, high, from, to;
+  double at(double value) const { return from + (to - from) * std::log(value / low) / std::log(high / low); }
+};
+
+struct Tick {
+  double value;
+  bool named;
+};
+// Decades, and 2 and 5 of them; the latter have names where there are few decades.
+std::vector<Tick> ticks(const Axis& axis) {
+  std::vector<Tick> out;
+  const bool few = axis.high / axis.low < 60;
+  for (int k = int(std::floor(std::log10(axis.low))); k <= int(std::ceil(std::log10(axis.high))); ++k)
+    for (const double digit : {1.0, 2.0, 5.0})
+      if (const double v = digit * std::pow(10.0, k); v >= axis.low && v <= axis.high)
+        out.push_back({v, few || digit == 1});
+  return out;
+}
+
+constexpr double panel_width = 420, panel_height = 290, head = 52;
+
+struct Panel {
+  Axis x, y;
+};
+
+Panel panel_of(const std::vector<Line>& lines, double left, double top) {
+  double first = INFINITY, last = 0, least = INFINITY, most = 0;
+  for (const Line& l : lines)
+    for (const Point& p : l.points) {
+      first = std::min(first, p.time), last = std::max(last, p.time);
+      least = std::min(least, p.error.low), most = std::max(most, p.error.high);
+    }
+  return {{first / 1.1, last * 1.1, left + 58, left + panel_width - 100},
+          {least / 1.25, most * 1.25, top + panel_height - 42, top + 28}};
+}
+
+std::string frame(const Panel& p) {
+  std::string out;
+  for (const Tick& t : ticks(p.x)) {
+    out += fmt::format("<path d='M{0:.1f} {1:.1f}V{2:.1f}' class='{3}'/>\n", p.x.at(t.value), p.y.from, p.y.to,
+                       t.named ? "grid" : "faint");
+    if (t.named)
+      out += fmt::format("<text x='{:.1f}' y='{:.1f}' class='tick' text-anchor='middle'>{:g}</text>\n", p.x.at(t.value),
+                         p.y.from + 16, t.value);
+  }
+  for (const Tick& t : ticks(p.y)) {
+    out += fmt::format("<path d='M{0:.1f} {1:.1f}H{2:.1f}' class='{3}'/>\n", p.x.from, p.y.at(t.value), p.x.to,
+                       t.named ? "grid" : "faint");
+    if (t.named)
+      out += fmt::format("<text x='{:.1f}' y='{:.1f}' class='tick' text-anchor='end'>{:g}</text>\n", p.x.from - 6,
+                         p.y.at(t.value) + 4, t.value);
+  }
+  return out;
+}
+
+std::string at(const Panel& p, const Point& point, double error) {
+  return fmt::format("{:.1f},{:.1f} ", p.x.at(point.time), p.y.at(error));
+}
+
+std::string drawn(const Panel& p, const Line& line) {
+  std::string median, band;
+  for (const Point& point : line.points)
+    median += at(p, point, point.error.median), band += at(p, point, point.error.high);
+  for (auto point = line.points.rbegin(); point != line.points.rend(); ++point) band += at(p, *point, point->error.low);
+  std::string out;
+  if (!line.one_seed) out += fmt::format("<polygon points='{}' fill='{}' opacity='0.15'/>\n", band, line.colour);
+  out += fmt::format("<polyline points='{}' stroke='{}'/>\n", median, line.colour);
+  const Point& last = line.points.back();
+  return out + fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='2.5' fill='{}'><title>{}: {:.3g}</title></circle>\n",
+                           p.x.at(last.time), p.y.at(last.error.median), line.colour, escaped(line.name),
+                           last.error.median);
+}
+
+// At the right ends of the lines, pushed apart where they meet.
+std::string names(const Panel& p, const std::vector<Line>& lines) {
+  constexpr double apart = 13;
+  struct End {
+    const Line* line;
+    double y;
+  };
+  std::vector<End> ends;
+  for (const Line& l : lines) ends.push_back({&l, p.y.at(l.points.back().error.median)});
+  std::sort(ends.begin(), ends.end(), [](const End& a, const End& b) { return a.y < b.y; });
+  for (size_t i = 1; i < ends.size(); ++i) ends[i].y = std::max(ends[i].y, ends[i - 1].y + apart);
+  double most = p.y.from;
+  for (auto e = ends.rbegin(); e != ends.rend(); ++e, most -= apart) e->y = std::min(e->y, most);
+  std::string out;
+  for (const End& e : ends)
+    out += fmt::format("<text x='{:.1f}' y='{:.1f}' fill='{}'>{}</text>\n", p.x.to + 7, e.y + 4, e.line->colour,
+                       escaped(e.line->name));
+  return out;
+}
+
+}  // namespace
+
+std::string curves_svg(const json& results) {
+  const bool wall = results.at("budget").value("seconds", 0.0) > 0;
+  std::vector<std::string> methods;
+  std::string panels;
+  size_t n = 0;
+  for (const json& scene : results.at("scenes")) {
+    const std::vector<Line> lines = lines_of(scene, wall ? "seconds" : "cpu_seconds", methods);
+    if (lines.empty()) continue;
+    const Panel p = panel_of(lines, panel_width * double(n % 2), head + panel_height * double(n / 2));
+    panels += fmt::format("<text x='{:.1f}' y='{:.1f}' class='name'>{}, {}x{}</text>\n", p.x.from, p.y.to - 9,
+                          escaped(scene.at("name")), scene.at("width").get<int>(), scene.at("height").get<int>());
+    panels += frame(p);
+    for (const Line& l : lines) panels += drawn(p, l);
+    panels += names(p, lines);
+    panels += fmt::format("<text x='{:.1f}' y='{:.1f}' class='tick' text-anchor='middle'>{}</text>\n",
+                          (p.x.from + p.x.to) / 2, p.y.from + 32, wall ? "seconds" : "CPU seconds");
+    ++n;
+  }
+  if (n == 0) return {};
+  const double width = panel_width * double(std::min<size_t>(n, 2)), height = head + panel_height * double((n + 1) / 2);
+  return fmt::format(
+             "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {0} {1}' width='{0}' height='{1}' "
+             "font-family='sans-serif' font-size='12'>\n"
+             "<style>polyline{{fill:none;stroke-width:2}}.grid{{stroke:#d5d9df}}.faint{{stroke:#eef0f3}}"
+             ".tick{{fill:#5b6470;font-size:11px}}.name{{font-weight:bold}}</style>\n"
+             "<rect width='{0}' height='{1}' fill='white'/>\n<text x='12' y='20' font-size='14'>{2}</text>\n"
+             "<text x='12' y='38' class='tick'>relMSE without the worst 0.1 % of pixels; median of the seeds, and "
+             "their "
+             "spread</text>\n",
+             width, height, escaped(results.value("title", ""))) +
+         panels + "</svg>\n";
+}
+
+}  // namespace ajar

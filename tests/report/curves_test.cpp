@@ -1,0 +1,96 @@
+// The picture of error against time: lines are where the axes say, and a picture without lines is none.
+
+#include "ajar/report/curves.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
+
+namespace ajar {
+namespace {
+
+using nlohmann::json;
+
+/// Error `factor` at 1 s, a tenth of it at 10 s, on a line in between.
+json run(double factor) {
+  json samples = json::array();
+  for (const double t : {1.0, 2.0, 10.0})
+    samples.push_back({{"cpu_seconds", t}, {"seconds", t / 2}, {"spp", 8 * t}, {"relmse_trimmed", factor / t}});
+  return {{"samples", samples}};
+}
+
+json results(const std::vector<double>& factors) {
+  json method = {{"name", "a<b"}, {"runs", json::array()}};
+  for (const double f : factors) method["runs"].push_back(run(f));
+  return {{"title", "x & y"},
+          {"budget", {{"cpu_seconds", 10}}},
+          {"scenes", {{{"name", "room"}, {"width", 4}, {"height", 3}, {"methods", {method}}}}}};
+}
+
+/// The number that stands before `label` of an axis; 0: x, 1: y.
+double tick(const std::string& svg, int axis, const std::string& label) {
+  const std::regex text("<text x='([0-9.]+)' y='([0-9.]+)' class='tick' text-anchor='" +
+                        std::string(axis == 0 ? "middle" : "end") + "'>" + label + "</text>");
+  std::smatch found;
+  EXPECT_TRUE(std::regex_search(svg, found, text)) << label;
+  return found.empty() ? NAN : axis == 0 ? std::stod(found[1]) : std::stod(found[2]) - 4;
+}
+
+std::vector<double> points(const std::string& svg) {
+  std::smatch line;
+  EXPECT_TRUE(std::regex_search(svg, line, std::regex("<polyline points='([^']*)'")));
+  std::vector<double> out;
+  std::string text = line.empty() ? "" : line[1].str();
+  std::replace(text.begin(), text.end(), ',', ' ');
+  std::istringstream in(text);
+  for (double v; in >> v;) out.push_back(v);
+  return out;
+}
+
+TEST(Curves, MedianIsWhereTheAxesSay) {
+  const std::string svg = curves_svg(results({0.8, 1, 1.5}));
+  const std::vector<double> at = points(svg);
+  ASSERT_EQ(at.size(), 6U) << svg;
+  const double places[] = {tick(svg, 0, "1"),   tick(svg, 1, "1"),  tick(svg, 0, "2"),
+                           tick(svg, 1, "0.5"), tick(svg, 0, "10"), tick(svg, 1, "0.1")};
+  for (size_t i = 0; i < 6; ++i) EXPECT_NEAR(at[i], places[i], 0.11) << i;
+  EXPECT_LT(at[0], at[4]);
+  EXPECT_LT(at[1], at[5]) << "small errors are below";
+}
+
+TEST(Curves, BandHoldsTheSpreadOfTheSeeds) {
+  EXPECT_NE(curves_svg(results({0.5, 1})).find("<polygon"), std::string::npos);
+  EXPECT_EQ(curves_svg(results({1})).find("<polygon"), std::string::npos) << "one seed has none";
+}
+
+TEST(Curves, NamesCannotBreakOut) {
+  const std::string svg = curves_svg(results({1}));
+  EXPECT_NE(svg.find(">a&lt;b</text>"), std::string::npos);
+  EXPECT_NE(svg.find("x &amp; y"), std::string::npos);
+  EXPECT_EQ(svg.find("a<b"), std::string::npos);
+}
+
+TEST(Curves, WhatHasNoSampleIsLeftOut) {
+  EXPECT_EQ(curves_svg(results({})), "");
+  json dark = results({1});
+  dark["scenes"].push_back({{"name", "shut"}, {"methods", json::array()}});
+  dark["scenes"][0]["methods"][0]["runs"].push_back(run(0));  // no logarithm
+  EXPECT_EQ(curves_svg(dark), curves_svg(results({1})));
+}
+
+TEST(Curves, OneSampleIsADot) {
+  json one = results({1});
+  json& samples = one["scenes"][0]["methods"][0]["runs"][0]["samples"];
+  samples = {samples[0]};
+  const std::string svg = curves_svg(one);
+  EXPECT_NE(svg.find("<circle"), std::string::npos);
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+  EXPECT_EQ(svg.find("inf"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace ajar
