@@ -42,7 +42,7 @@ struct Shooting {
   LoadCache cache;
 };
 
-/// The scene's time at a frame; nothing where its <animation>s rest at their first keys.
+/// The scene's time at a frame; nothing where its <animation>s rest.
 std::optional<double> time_at(const Timeline& timeline, int frame);
 /// The scene of a frame. Throws Error, with the frame's parameters in it.
 std::shared_ptr<const Scene> load_frame(Shooting& shooting, int frame);

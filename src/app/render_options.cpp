@@ -143,7 +143,8 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
   c->add_option("--sampler", a->sampler, "sobol (Owen-scrambled) or independent")
       ->check(CLI::IsMember({"sobol", "independent"}));
   c->add_option("-D", a->defines, "name=value: a parameter of the scene")->allow_extra_args(false);
-  c->add_option("--at", a->at, "time at which the scene's <animation>s are read (default: each at its first key)");
+  c->add_option("--at", a->at,
+                "time at which the scene's <animation>s are read (default: when the shutter opens, else 0)");
   c->add_option("--aov", a->features, "more channels in the EXR: albedo,normal,position,variance")
       ->delimiter(',')
       ->check(CLI::IsMember({"albedo", "normal", "position", "variance"}));

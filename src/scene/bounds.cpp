@@ -31,6 +31,20 @@ Box box_of(const Shape& shape) {
   return b;
 }
 
+Boxes boxes_of(const Scene& scene) {
+  Boxes b;
+  std::vector<Box> groups(scene.groups);
+  for (const Shape& s : scene.shapes) {
+    b.shapes.push_back(s.kind == ShapeKind::mesh ? box_of(scene.meshes[s.mesh].positions) : box_of(s));
+    (s.group == none ? b.all : groups[s.group]).add(b.shapes.back());
+  }
+  for (const Instance& i : scene.instances) {
+    b.instances.push_back(box_of(i.to_world, groups[i.group]));
+    b.all.add(b.instances.back());
+  }
+  return b;
+}
+
 Box box_of(const Mat4& m, const Box& box) {
   Box b;
   if (box.empty()) return b;

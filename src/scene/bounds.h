@@ -4,6 +4,7 @@
 
 #include "ajar/core/parallel.h"
 #include "ajar/scene/motion.h"
+#include "ajar/scene/scene.h"
 
 namespace ajar {
 
@@ -22,5 +23,12 @@ Box box_of(const std::vector<Vec3>& points);
 /// Of a quadric.
 Box box_of(const Shape& shape);
 Box box_of(const Mat4& m, const Box& box);
+
+/// Of a scene: of every shape as it is (in its group, where it is in one), of every instance, and of all that is seen.
+struct Boxes {
+  std::vector<Box> shapes, instances;
+  Box all;
+};
+Boxes boxes_of(const Scene& scene);
 
 }  // namespace ajar

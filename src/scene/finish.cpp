@@ -27,13 +27,7 @@ bool is_mesh(const Shape& s) { return s.kind == ShapeKind::mesh; }
 
 // Bounding sphere about the middle of the bounding box. Meshes by their vertices, the rest by their boxes.
 void set_bounds(Scene& scene) {
-  std::vector<Box> shapes, groups(scene.groups), instances;
-  for (const Shape& s : scene.shapes) shapes.push_back(is_mesh(s) ? box_of(scene.meshes[s.mesh].positions) : box_of(s));
-  Box all;
-  for (size_t i = 0; i < shapes.size(); ++i)
-    (scene.shapes[i].group == none ? all : groups[scene.shapes[i].group]).add(shapes[i]);
-  for (const Instance& i : scene.instances) instances.push_back(box_of(i.to_world, groups[i.group]));
-  for (const Box& b : instances) all.add(b);
+  const auto [shapes, instances, all] = boxes_of(scene);
   scene.center = Vec3(0), scene.radius = 1;
   if (all.empty()) return;
   scene.center = all.lo * 0.5f + all.hi * 0.5f;

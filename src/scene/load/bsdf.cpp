@@ -28,8 +28,11 @@ double index_of(Params& p, const char* name, double otherwise) {
   const std::string* value = attribute(*node, "value");
   std::optional<double> ior = value == nullptr ? std::nullopt : to_number(*value);
   if (!ior && node->tag == "string" && value != nullptr) ior = find_dielectric(*value);
-  if (!ior && node->tag == "string")
-    fail(p.loader, *node, fmt::format("unknown substance; known are {}, or a number", dielectric_names()));
+  if (!ior && node->tag == "string") {
+    unsupported(p.loader, *node, fmt::format("unknown substance; known are {}, or a number", dielectric_names()),
+                fmt::format("{} in its place", otherwise));
+    return otherwise;
+  }
   if (!ior || !(*ior >= 1e-3 && *ior <= 1e3)) fail(p.loader, *node, "should be an index of refraction: 1.5, \"bk7\"");
   return *ior;
 }
@@ -76,8 +79,12 @@ void conductor(Params& p, Material& m) {
   const bool given = has(p, "eta") || has(p, "k");
   const std::string name = text(p, "material", given || !p.loader.document.old ? "none" : "Cu");
   const Metal* metal = find_metal(name);
-  if (metal == nullptr)
-    fail(p.loader, p.node, fmt::format("unknown material \"{}\"; known are {}", name.substr(0, 80), metal_names()));
+  if (metal == nullptr) {
+    unsupported(p.loader, p.node,
+                fmt::format("unknown material \"{}\"; known are {}", name.substr(0, 80), metal_names()),
+                "copper in its place");
+    metal = find_metal("Cu");
+  }
   const float outside = float(index_of(p, "ext_eta", p.loader.document.old ? air : 1));
   m.eta = colour(p, "eta", metal->eta, Colour::ratio) / outside;
   m.k = colour(p, "k", metal->k, Colour::ratio) / outside;

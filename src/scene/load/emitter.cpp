@@ -74,7 +74,7 @@ void spot(Params& p) {
   Light light = make_light(p, LightKind::spot);
   light.radiance = Slot(colour(p, "intensity", Rgb(1), Colour::emission));
   const double cutoff = number(p, "cutoff_angle", 20), beam = number(p, "beam_width", cutoff * 3 / 4);
-  if (!(cutoff > 0 && cutoff < 180)) fail(p.loader, p.node, "cutoff_angle should be between 0 and 180 degrees");
+  if (!(cutoff > 0 && cutoff <= 180)) fail(p.loader, p.node, "cutoff_angle should be above 0, at most 180 degrees");
   if (!(beam >= 0 && beam <= cutoff)) fail(p.loader, p.node, "beam_width should be from 0 to cutoff_angle");
   light.cos_cutoff = float(std::cos(glm::radians(cutoff)));
   light.cos_beam = float(std::cos(glm::radians(beam)));

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
+#include "../bounds.h"
 #include "ajar/core/error.h"
 #include "loader.h"
 
@@ -50,7 +52,49 @@ std::string later_name(const std::string& tag) {
   return tag == "camera" ? ", <sensor> today" : tag == "luminaire" ? ", <emitter> today" : "";
 }
 
-void load_child(Loader& loader, const Node& node, bool& has_sensor, bool& has_integrator) {
+// The one that Mitsuba takes of several: the first, in 0.x the last. Null where there is none.
+const Node* sensor_of(Loader& loader) {
+  std::vector<const Node*> sensors;
+  for (const Node& child : loader.document.root.children)
+    if (child.tag == "sensor") sensors.push_back(&child);
+  if (sensors.empty()) return nullptr;
+  const Node* used = loader.document.old ? sensors.back() : sensors.front();
+  if (sensors.size() > 1)
+    note(loader, *used,
+         fmt::format("the scene has several sensors: the {} one is used", loader.document.old ? "last" : "first"));
+  return used;
+}
+
+// In its place, as Mitsuba has it: along z, from where all of the scene is within 45 degrees.
+void add_sensor(Scene& scene, const std::string& name) {
+  const Box box = boxes_of(scene).all;
+  const Vec3 size = box.hi - box.lo, middle = box.lo * 0.5f + box.hi * 0.5f;
+  const float distance = max_component(size) / (2 * std::tan(pi / 8));
+  if (!(distance > 0))
+    throw Error(fmt::format("{}: the scene has no camera: add <sensor type=\"perspective\"> with a to_world", name));
+  Mat4 to_world(1);
+  to_world[3] = Vec4(middle.x, middle.y, box.lo.z - distance, 1);
+  scene.filter = make_filter(FilterKind::gaussian, 0, 0.5f);
+  set_perspective(scene.camera, 45, to_world);
+  scene.notes.push_back(name +
+                        ": the scene has no camera: all of it is seen, along +z; add <sensor type=\"perspective\">");
+}
+
+// What Mitsuba 0.x lights a scene with that has no light.
+constexpr const char* usual_light =
+    "<scene version='0.6.0'><emitter type='sunsky'><transform name='toWorld'><rotate y='1' angle='-120'/></transform>"
+    "<float name='scale' value='2'/><float name='sunRadiusScale' value='15'/></emitter></scene>";
+
+void light_up(Loader& loader, const std::string& name) {
+  if (!loader.document.old) {
+    loader.scene.notes.push_back(name + ": the scene has no light: the image will be black");
+    return;
+  }
+  load_emitter(loader, read_document(usual_light, "", name, {}).root.children.front(), none);
+  loader.scene.notes.push_back(name + ": the scene has no light: sun and sky were added, as Mitsuba 0.x does");
+}
+
+void load_child(Loader& loader, const Node& node, bool& has_integrator) {
   if (node.tag == "bsdf") {
     load_bsdf(loader, node);
   } else if (node.tag == "shape") {
@@ -58,15 +102,15 @@ void load_child(Loader& loader, const Node& node, bool& has_sensor, bool& has_in
   } else if (node.tag == "emitter") {
     if (node.type != "area" || node.id.empty()) load_emitter(loader, node, none);
   } else if (node.tag == "sensor") {
-    if (has_sensor) return note(loader, node, "the scene has several sensors: the first one is used");
-    has_sensor = true;
-    load_sensor(loader, node);
+    // one of them is read before all else
   } else if (node.tag == "integrator") {
     if (has_integrator) return note(loader, node, "the scene has several integrators: the first one is used");
     has_integrator = true;
     load_integrator(loader, node);
   } else if (node.tag == "medium" || node.tag == "phase" || node.tag == "volume") {
-    note(loader, node, "participating media are not supported; a shape that names it is an error");
+    note(loader, node,
+         loader.lenient ? "participating media are not supported: left out"
+                        : "participating media are not supported; a shape that names it is an error");
   } else if (node.tag == "texture") {
     check_texture(loader, node);  // read where it is named: only then is it known what its numbers stand for
   } else if (is_definition(node)) {
@@ -82,19 +126,20 @@ void load_child(Loader& loader, const Node& node, bool& has_sensor, bool& has_in
 
 Scene load(const std::string& text, const std::string& folder, const std::string& name, const LoadOptions& options) {
   const Document document = read_document(text, folder, name, options.defines);
-  Loader loader{document, options.lenient, options.time, options.cache};
+  Loader loader{document, options.lenient, 0, options.cache};
   loader.scene.notes = document.notes;
   loader.scene.content = document.content;
   collect_ids(loader, document.root);
   count_meshes(loader, document.root);
-  bool has_sensor = false, has_integrator = false;
-  for (const Node& child : document.root.children) load_child(loader, child, has_sensor, has_integrator);
-  if (!has_sensor)
-    throw Error(fmt::format("{}: the scene has no camera: add <sensor type=\"perspective\"> with a to_world", name));
+  const Node* sensor = sensor_of(loader);
+  loader.time = options.time.value_or(sensor ? shutter_open(loader, *sensor) : 0);
+  if (sensor) load_sensor(loader, *sensor);
+  bool has_integrator = false;
+  for (const Node& child : document.root.children) load_child(loader, child, has_integrator);
   if (loader.scene.shapes.empty() && loader.scene.instances.empty())
     loader.scene.notes.push_back(name + ": the scene has no shapes");
-  if (loader.scene.lights.empty())
-    loader.scene.notes.push_back(name + ": the scene has no light: the image will be black");
+  if (loader.scene.lights.empty()) light_up(loader, name);
+  if (!sensor) add_sensor(loader.scene, name);
   try {
     finish(loader.scene);
   } catch (const Error& error) {

@@ -26,7 +26,7 @@ enum class Colour { reflectance, ratio, emission };
 struct Loader {
   const Document& document;
   bool lenient = false;
-  std::optional<double> time;  ///< LoadOptions::time
+  double time = 0;             ///< at which <animation>s are read
   LoadCache* cache = nullptr;  ///< LoadOptions::cache
   Scene scene;
   std::unordered_map<std::string, const Node*> ids;
@@ -174,6 +174,8 @@ void load_emitter(Loader& loader, const Node& node, uint32_t shape);
 /// sky, sun, sunsky: adds one light for the sky, one for the sun.
 void load_daylight(Params& params, bool with_sky, bool with_sun);
 void load_sensor(Loader& loader, const Node& node);
+/// When a sensor's shutter opens.
+double shutter_open(Loader& loader, const Node& node);
 void load_integrator(Loader& loader, const Node& node);
 
 }  // namespace ajar

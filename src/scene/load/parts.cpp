@@ -34,6 +34,11 @@ std::vector<Part> parts_of(Params& p) {
 
 uint32_t material_of(Params& p, const Part& part, bool emits) {
   if (part.bsdf != nullptr) return load_bsdf(p.loader, *part.bsdf);
+  if (p.loader.document.old && !emits && !nested(p, "medium").empty()) {  // the bounds of a medium are not seen
+    Material m;
+    m.kind = MaterialKind::null;
+    return add_material(p.loader, p.node, m);
+  }
   uint32_t& shared = emits ? p.loader.black : p.loader.grey;
   if (shared == none) {
     Material m;

@@ -172,6 +172,11 @@ double tan_half_x(Params& p, Camera& camera) {
   }
 }
 
+double shutter_open(Loader& loader, const Node& node) {
+  Params p(loader, node);
+  return number(p, "shutter_open", 0);
+}
+
 void load_sensor(Loader& loader, const Node& node) {
   Params p(loader, node);
   Camera& camera = loader.scene.camera;

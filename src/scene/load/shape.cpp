@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 
 #include "ajar/core/error.h"
 #include "parts.h"
@@ -167,8 +168,18 @@ void file_mesh(Params& p, Shape& shape, const std::string& key, MeshOptions opti
   shape.mesh = add_mesh(p, std::move(mesh));
 }
 
+// Mitsuba 0.x takes materials from there, where the scene names none.
+void note_materials(Params& p, const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string head(4096, '\n');
+  in.read(head.data(), std::streamsize(head.size()));
+  if (head.starts_with("mtllib ") || head.find("\nmtllib ") != head.npos)
+    note(p.loader, p.node, "the materials that its mtllib names are not read: grey; give it a <bsdf>");
+}
+
 void obj(Params& p, Shape& shape, const Part& part) {
   const std::string path = file(p, "filename");
+  if (p.loader.document.old && part.bsdf == nullptr && !part.takes) note_materials(p, path);
   MeshOptions options;
   options.flip_v = true;
   options.takes_material = part.takes;

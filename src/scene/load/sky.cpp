@@ -151,7 +151,7 @@ Rgb sun_radiance(const Daylight& day) {
     const double depth = 0.008735 * std::pow(micro, -4.08) + beta * std::pow(micro, -1.3) + 0.35 * absorbed;
     list.push_back({nm, planck * std::exp(-depth * mass)});
   }
-  return rgb_of_list(std::move(list), Colour::emission);
+  return glm::max(rgb_of_list(std::move(list), Colour::emission), Rgb(0));  // a low sun is redder than sRGB can say
 }
 
 double scale_of(Params& p, const char* name, double otherwise) {

@@ -9,7 +9,7 @@
 namespace ajar {
 namespace {
 
-constexpr const char* types[] = {"bitmap", "checkerboard", "scale", "mesh_attribute"};
+constexpr const char* types[] = {"bitmap", "checkerboard", "scale", "mesh_attribute", "vertexcolors"};
 
 // Affine map of (u, v): scale and offset (0.x), then the transform (2.x, 3.x).
 Mat3 uv_map(Params& p) {
@@ -67,7 +67,7 @@ Texture scaled(Params& p, Colour kind) {
 Texture mesh_attribute(Params& p) {
   Texture t;
   t.kind = TextureKind::mesh_attribute;
-  t.attribute = text(p, "name", "");
+  t.attribute = text(p, "name", p.node.type == "vertexcolors" ? "vertex_color" : "");
   if (!t.attribute.starts_with("vertex_") && !t.attribute.starts_with("face_"))
     fail(p.loader, p.node, "needs a <string name=\"name\" .../> that begins with vertex_ or face_: vertex_color");
   const double scale = number(p, "scale", 1);
@@ -169,7 +169,7 @@ uint32_t load_texture(Loader& loader, const Node& node, Colour kind) {
     t = checkerboard(p, kind);
   } else if (node.type == "scale") {
     t = scaled(p, kind);
-  } else if (node.type == "mesh_attribute") {
+  } else if (node.type == "mesh_attribute" || node.type == "vertexcolors") {
     t = mesh_attribute(p);
   } else {
     t.kind = TextureKind::checkerboard;

@@ -30,14 +30,24 @@ DVec3 point_attribute(const Loader& loader, const Node& node, const char* name) 
   return {(*list)[0], (*list)[1], (*list)[2]};
 }
 
+// What Mitsuba takes for up where none is given: a vector across the line of sight z, another one in 0.x than later.
+DVec3 usual_up(const DVec3& z, bool old) {
+  if (!old) {
+    const double sign = z.z < 0 ? -1 : 1, a = -1 / (sign + z.z);
+    return {1 + sign * z.x * z.x * a, sign * z.x * z.y * a, -sign * z.x};
+  }
+  const DVec3 across = std::abs(z.x) > std::abs(z.y) ? DVec3(z.z, 0, -z.x) : DVec3(0, z.z, -z.y);
+  return glm::cross(glm::normalize(across), z);
+}
+
 DMat4 lookat_of(const Loader& loader, const Node& node) {
   const DVec3 origin = point_attribute(loader, node, "origin"), target = point_attribute(loader, node, "target");
   const DVec3 view = target - origin;
   if (!(glm::dot(view, view) > 0)) fail(loader, node, "origin and target are the same point");
   const DVec3 z = glm::normalize(view);
-  DVec3 up = std::abs(z.y) < 0.9 ? DVec3(0, 1, 0) : DVec3(0, 0, 1);
+  DVec3 up(0);
   if (attribute(node, "up") != nullptr) up = point_attribute(loader, node, "up");
-  if (!(glm::dot(up, up) > 0)) fail(loader, node, "up is the zero vector");
+  if (!(glm::dot(up, up) > 0)) up = usual_up(z, loader.document.old);
   const DVec3 left = glm::cross(up, z);
   if (!(glm::dot(left, left) > 1e-16 * glm::dot(up, up))) fail(loader, node, "up points along the line of sight");
   const DVec3 x = glm::normalize(left);
@@ -134,7 +144,7 @@ bool has_transform(const Params& params, const char* name) {
 // and after the last it rests.
 DMat4 animated(Loader& loader, const Node& node) {
   const std::map<double, const Node*> keys = keys_of(loader, node);
-  const double time = loader.time.value_or(keys.begin()->first);
+  const double time = loader.time;
   const auto after = keys.lower_bound(time);
   if (after == keys.end()) return affine_of(loader, *std::prev(after)->second);
   const DMat4 b = affine_of(loader, *after->second);

@@ -1,5 +1,9 @@
 // Sensor, film, filter, sampler, integrator.
 #include "ajar/scene/camera.h"
+
+#include <cmath>
+#include <numbers>
+
 #include "scene_text.h"
 
 namespace ajar {
@@ -190,8 +194,25 @@ TEST(Sensors, FilmAndSamplerByReference) {
 TEST(Sensors, FirstOfSeveral) {
   const Scene s = load_inside("<sensor type='orthographic'/>");
   EXPECT_EQ(s.camera.kind, CameraKind::perspective);
-  EXPECT_TRUE(says(s.notes, "several sensors"));
+  EXPECT_TRUE(says(s.notes, "several sensors: the first one is used"));
+  const Scene old = load_inside("<sensor type='orthographic'/>", {}, "0.5.0");
+  EXPECT_EQ(old.camera.kind, CameraKind::orthographic);
+  EXPECT_TRUE(says(old.notes, "several sensors: the last one is used"));
   EXPECT_SAYS(error("", "irradiancemeter"), "unknown sensor; supported: perspective, thinlens, orthographic");
+}
+
+// From before the scene, along z, so that its larger side just fits into 45 degrees.
+TEST(Sensors, WithoutOneAllIsSeen) {
+  const auto load = [](const std::string& inside) {
+    return load_scene_text("<scene version='3.0.0'>" + inside + "</scene>", "", "test.xml");
+  };
+  const Scene s =
+      load("<shape type='cube'><transform name='to_world'><scale x='3'/><translate x='1' z='5'/></transform></shape>");
+  EXPECT_RGB(Vec3(s.camera.to_world[3]), 1, 0, 4 - 3 / std::tan(std::numbers::pi / 8), 1e-5);
+  EXPECT_RGB(Vec3(s.camera.to_world[2]), 0, 0, 1, 0);
+  EXPECT_NEAR(s.camera.plane.x, std::tan(std::numbers::pi / 8), 1e-6);
+  EXPECT_TRUE(says(s.notes, "no camera: all of it is seen"));
+  EXPECT_THROW(load("<emitter type='constant'/>"), Error);
 }
 
 // Misspelt names are told, as they are spelt; those of Mitsuba that change nothing here are not.

@@ -66,6 +66,8 @@ TEST(Emitters, Spot) {
   EXPECT_NEAR(l.cos_cutoff, std::cos(20 * pi / 180), 1e-6);
   EXPECT_EQ(l.cos_beam, 1);
   EXPECT_SAYS(error_of(emitter("spot", "<float name='cutoff_angle' value='0'/>")), "cutoff_angle");
+  EXPECT_SAYS(error_of(emitter("spot", "<float name='cutoff_angle' value='181'/>")), "cutoff_angle");
+  EXPECT_EQ(read("spot", "<float name='cutoff_angle' value='180'/>").cos_cutoff, -1);  // all around
   EXPECT_SAYS(error_of(emitter("spot", "<float name='beam_width' value='30'/>")), "beam_width");
 }
 
@@ -223,6 +225,29 @@ TEST(Emitters, ScaleOfSunsky) {
   EXPECT_NEAR(power(s, 0) / power(one, 0), 3, 1e-4);
   EXPECT_NEAR(power(s, 1) / power(one, 1), 2, 1e-4);
   EXPECT_TRUE(says(old(emitter("sky", scaled("stretch", "2"))).notes, "\"stretch\" is not used"));
+}
+
+// Behind so much air no blue is left, and less than none of it in sRGB: that must not take the red with it.
+TEST(Emitters, LowSunIsRed) {
+  for (const char* turbidity : {"3", "5.2", "8"})
+    for (const char* height : {"0.05", "0.1", "0.3"}) {
+      const Rgb sun = read("sun", std::string("<float name='turbidity' value='") + turbidity +
+                                      "'/><vector name='sun_direction' x='1.5' y='0.5' z='" + height + "'/>")
+                          .radiance.value;
+      EXPECT_GT(sun.x, 0) << turbidity << ' ' << height;
+      EXPECT_GE(sun.x, sun.y);
+      EXPECT_GE(sun.y, sun.z);
+      EXPECT_GE(sun.z, 0);
+    }
+}
+
+TEST(Emitters, DaylightWhereOldScenesHaveNone) {
+  const Scene s = load_inside("<shape type='cube'/>", {}, "0.6.0");
+  ASSERT_EQ(s.lights.size(), 2u);
+  EXPECT_EQ(s.lights[0].kind, LightKind::envmap);
+  EXPECT_EQ(s.lights[1].kind, LightKind::sun);
+  EXPECT_TRUE(says(s.notes, "sun and sky were added"));
+  EXPECT_EQ(load_inside("<emitter type='point'/>", {}, "0.6.0").lights.size(), 1u);
 }
 
 TEST(Emitters, UnknownOnes) {

@@ -121,17 +121,18 @@ TEST(TextureKinds, Scale) {
 }
 
 TEST(TextureKinds, MeshAttribute) {
-  const std::string shape =
-      "<shape type='ply'><string name='filename' value='coloured.ply'/><bsdf type='diffuse'>"
-      "<texture name='reflectance' type='mesh_attribute'><string name='name' "
-      "value='vertex_color'/></texture></bsdf></shape>";
-  const Scene s = load_inside(shape);
-  EXPECT_EQ(s.textures[0].kind, TextureKind::mesh_attribute);
-  Surface surface;
-  surface.shape = 0;
-  surface.bary = {1, 0};
-  EXPECT_RGB(eval(s, s.materials[0].reflectance, surface), 0, 1, 0, 1e-6);
-  EXPECT_RGB(mean(s, s.materials[0].reflectance), 1.0 / 3, 1.0 / 3, 1.0 / 3, 1e-6);
+  for (const char* type : {"mesh_attribute'><string name='name' value='vertex_color'/></texture>", "vertexcolors'/>"}) {
+    const Scene s =
+        load_inside(std::string("<shape type='ply'><string name='filename' value='coloured.ply'/><bsdf type='diffuse'>"
+                                "<texture name='reflectance' type='") +
+                    type + "</bsdf></shape>");
+    EXPECT_EQ(s.textures[0].kind, TextureKind::mesh_attribute);
+    Surface surface;
+    surface.shape = 0;
+    surface.bary = {1, 0};
+    EXPECT_RGB(eval(s, s.materials[0].reflectance, surface), 0, 1, 0, 1e-6);
+    EXPECT_RGB(mean(s, s.materials[0].reflectance), 1.0 / 3, 1.0 / 3, 1.0 / 3, 1e-6);
+  }
 }
 
 std::string with_attribute(const std::string& shape, const std::string& name, const std::string& inside = "") {
