@@ -12,7 +12,7 @@ struct Interrupted {
   std::string what;
 };
 
-/// From now on the first signal asks to stop; a second one ends the program at once.
+/// From now on a signal asks to stop; Ctrl-C once more, a second or two later, ends the program at once.
 void catch_stop();
 bool stop_asked();
 /// 128 + the signal, as shells have it.

@@ -50,7 +50,8 @@ void add_photons(Photons& photons, const Subpath& light, Heuristic h, double inn
   for (int s = 2; s <= light.n; ++s) {
     const Vertex& v = light[s - 1];
     straight = straight && (s == 2 || light[s - 2].delta);
-    if (!connectable(v.guide) || is_black(v.beta) || !(v.merge > 0)) continue;
+    // Where the normals disagree nothing scatters, but light arrives there all the same, and is merged beside it.
+    if (!v.guide.bsdf.has_smooth || is_black(v.beta) || !(v.merge > 0)) continue;
     const Vertex& before = light[s - 2];
     Shares shares;
     shares.light_first = share, shares.inner = inner;

@@ -77,7 +77,14 @@ bool start_light(const Scene& scene, const WalkOptions& options, Sampler& sample
 
 double direct_share(const Scene& scene, const Vertex& x, const LightPoint& point, const Vec3& wi, double distance2,
                     const EmissionPdf& emission) {
-  const double direct = pdf_next_event(scene, x.guide, x.p, point, wi);
+  double direct;
+  if (x.guide.blocked) {  // only merged, with what sees light from here: bent normals beside it
+    Guide flat = x.guide;
+    flat.frame.n = flat.ng;
+    direct = pdf_next_event(scene, flat, x.p, point, wi);
+  } else {
+    direct = pdf_next_event(scene, x.guide, x.p, point, wi);
+  }
   if (point.infinite) return ratio(direct, emission.direction);
   if (point.delta_position) return ratio(direct, emission.position);
   return ratio(direct * std::abs(glm::dot(point.n, wi)) / distance2, emission.position);

@@ -2,6 +2,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "bounds.h"
 #include "load/mesh.h"
 
 namespace ajar {
@@ -44,6 +45,18 @@ Slot add_wave_normals(Scene& scene) {
 }
 
 }  // namespace
+
+bool add_camera(Scene& scene) {
+  const Box box = boxes_of(scene).all;
+  const Vec3 middle = box.lo * 0.5f + box.hi * 0.5f;
+  const float distance = max_component(box.hi - box.lo) / (2 * std::tan(pi / 8));
+  if (!(distance > 0)) return false;
+  Mat4 to_world(1);
+  to_world[3] = Vec4(middle.x, middle.y, box.lo.z - distance, 1);
+  scene.filter = make_filter(FilterKind::gaussian, 0, 0.5f);
+  set_perspective(scene.camera, 45, to_world);
+  return true;
+}
 
 uint32_t add_material(Scene& scene, const Material& material) { return append(scene.materials, material); }
 

@@ -3,6 +3,8 @@
 
 #include <cstring>
 
+#include "ajar/scene/load.h"
+#include "kit/files.h"
 #include "kit/stage.h"
 #include "measure.h"
 
@@ -243,6 +245,23 @@ TEST(Merging, CameraInACorner) {
   const double right = mean(render_once(scene, with_radius("bdpt", 0, 64)));
   for (const char* integrator : {"vcm", "guided-vcm"})
     EXPECT_NEAR(mean(render_once(scene, with_radius(integrator, 2, 64))), right, 0.04 * right) << integrator;
+}
+
+// Low light on cobbles: where they turn away from it nothing scatters, but what arrives there is as much as arrives
+// beside it, and is merged there. (Without it a tenth of the light was missing.)
+TEST(Merging, BentNormalsLoseNoLight) {
+  LoadOptions options;
+  options.defines = {{"resx", "64"}, {"resy", "36"}};
+  const Scene scene = load_scene(source_path("scenes/bump/bump.xml"), options);
+  const auto ground = [&](const char* integrator, uint32_t spp) {
+    const Picture p = render_once(scene, with_radius(integrator, 3, spp));
+    double sum = 0;
+    for (int y = p.height / 2; y < p.height; ++y)
+      for (int i = 0; i < 3 * p.width / 2; ++i) sum += double(p.pixels[size_t(y * p.width * 3 + i)]);
+    return sum;
+  };
+  const double path = ground("path", 128);
+  for (const char* integrator : {"vcm", "photon"}) EXPECT_NEAR(ground(integrator, 96) / path, 1, 0.025) << integrator;
 }
 
 TEST(Merging, NoLightIsBlack) {

@@ -9,6 +9,10 @@
 
 namespace ajar {
 
+/// Puts the camera of a scene that has none where Mitsuba does: it looks along +z, from so far before the scene that
+/// its longest side fills 45 degrees. False where the scene has no extent.
+bool add_camera(Scene& scene);
+
 // Parts. They add to a scene and return the index of what they added; call finish() at the end. Metres, y is up.
 
 uint32_t add_material(Scene& scene, const Material& material);

@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 
-#include "../bounds.h"
 #include "ajar/core/error.h"
+#include "ajar/scene/build.h"
 #include "loader.h"
 
 namespace ajar {
@@ -67,15 +66,8 @@ const Node* sensor_of(Loader& loader) {
 
 // In its place, as Mitsuba has it: along z, from where all of the scene is within 45 degrees.
 void add_sensor(Scene& scene, const std::string& name) {
-  const Box box = boxes_of(scene).all;
-  const Vec3 size = box.hi - box.lo, middle = box.lo * 0.5f + box.hi * 0.5f;
-  const float distance = max_component(size) / (2 * std::tan(pi / 8));
-  if (!(distance > 0))
+  if (!add_camera(scene))
     throw Error(fmt::format("{}: the scene has no camera: add <sensor type=\"perspective\"> with a to_world", name));
-  Mat4 to_world(1);
-  to_world[3] = Vec4(middle.x, middle.y, box.lo.z - distance, 1);
-  scene.filter = make_filter(FilterKind::gaussian, 0, 0.5f);
-  set_perspective(scene.camera, 45, to_world);
   scene.notes.push_back(name +
                         ": the scene has no camera: all of it is seen, along +z; add <sensor type=\"perspective\">");
 }
