@@ -41,9 +41,8 @@ void write_pictures(const Arguments& a, const Scene& scene, const Fields& fields
 void run(const Arguments& a) {
   if (a.scene.empty() && !(a.out.empty() && a.size.empty() && a.defines.empty()))
     throw Error("-o, --size and -D are for pictures, and these need the scene: add --scene SCENE.xml");
-  std::error_code error;
-  if (!a.scene.empty() && !std::filesystem::is_directory(a.out, error))
-    throw Error(fmt::format("-o {}: no such folder; name one for the pictures", a.out));
+  if (!a.scene.empty() && a.out.empty()) throw Error("--scene is for pictures: add -o FOLDER");
+  if (!a.out.empty()) check_folder(a.out);
   if (a.scene.empty()) {
     fmt::print("{}", describe(load_fields(a.file)));
     return;
@@ -52,6 +51,7 @@ void run(const Arguments& a) {
   if (!a.size.empty()) set_size(scene.camera, a.size);
   const StoredFields stored = load_fields(a.file, scene_key(scene));
   fmt::print("{}", describe(stored));
+  make_folder(a.out);
   write_pictures(a, scene, stored.fields);
 }
 

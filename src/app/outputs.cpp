@@ -142,6 +142,11 @@ Log open_log(const RenderArguments& a, std::optional<Picture> reference) {
   return log;
 }
 
+void check_apart(const RenderArguments& a, const Scene& scene) {
+  for (const Named& output : written(a))
+    for (const std::string& file : scene.files) require_apart(output, {"a file of the scene,", file});
+}
+
 void check_outputs(const RenderArguments& a) {
   check_name(a);
   const std::vector<Named> outputs = written(a);

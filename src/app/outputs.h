@@ -29,6 +29,8 @@ std::optional<Picture> read_reference(const RenderArguments&, const Camera&);
 Log open_log(const RenderArguments&, std::optional<Picture> reference);
 /// Throws Error where a name is wrong, or of two things at once, or cannot be written.
 void check_outputs(const RenderArguments&);
+/// The same, where an output is one of the files that the scene was read from.
+void check_apart(const RenderArguments&, const Scene&);
 void write_record(const RenderArguments&, const Run&, const RenderState&);
 /// Image, features and record; prints what it wrote, unless told to be quiet.
 void write_image(const RenderArguments&, const Scene&, const Accel&, Run&, const RenderState&);

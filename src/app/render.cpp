@@ -64,7 +64,12 @@ std::string interruption(const RenderArguments& a, const Film& film) {
   return fmt::format("interrupted in the first pass: {:.0f} % of the image has no sample{}", 100 * share, rest);
 }
 
-void warn(const RenderState& state) {
+void warn(const Run& run, const RenderState& state) {
+  const bool young = is_guided(run.options.integrator) && state.film.dropped == 0;
+  if (const uint32_t n = young ? traced_one_in(state.learning, state.film) : 1; n > 1)
+    fmt::print(stderr,
+               "ajar: warning: most pixels have no sample: the first four passes of a guided render teach it, and "
+               "trace few pixels; give it more time, or --spp 4 or more\n");
   if (state.stats.rejected == 0) return;
   fmt::print(stderr, "ajar: warning: {} values were not finite or negative and were left out", state.stats.rejected);
   for (const std::string& r : state.stats.replay) fmt::print(stderr, "; {}", r);
@@ -138,6 +143,7 @@ void run_render(RenderArguments a) {
   if (a.at && !std::isfinite(*a.at)) throw Error(fmt::format("--at {}: not a time; write a number", *a.at));
   load.time = a.at;
   Scene scene = load_scene(a.scene, load);
+  check_apart(a, scene);
   if (a.at) check_time(*a.at, scene);
   if (!a.size.empty()) set_size(scene.camera, a.size);
   Run run;
@@ -164,7 +170,7 @@ void run_render(RenderArguments a) {
   Log log = open_log(a, std::move(reference));
   trace(a, scene, accel, run, state, log);
   write_all(a, scene, accel, run, state, log);
-  warn(state);
+  warn(run, state);
   if (run.interrupted) throw Interrupted{interruption(a, state.film)};
   if (!a.versus.empty()) hold_against(a, scene, accel, run, state);
 }

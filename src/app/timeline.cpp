@@ -165,8 +165,10 @@ Keyframes read_keyframes(const std::string& path) {
   Json json;
   try {
     json = Json::parse(in);
-  } catch (const Json::exception& error) {
-    throw Error(fmt::format("{}: not JSON: {}", path, error.what()));
+  } catch (const Json::parse_error& error) {
+    throw Error(fmt::format("{}: not JSON at byte {}; look for a missing comma, quote or bracket", path, error.byte));
+  } catch (const Json::exception&) {
+    throw Error(path + ": holds a number that is too large; write one below 1e308");
   }
   const std::string how = R"(write {"frames": 48, "parameters": {"door": [[0, 2], [47, 60]]}})";
   if (!json.is_object()) throw Error(fmt::format("{}: {}", path, how));

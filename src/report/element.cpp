@@ -43,6 +43,8 @@ Json read_json(const std::filesystem::path& path) {
     const size_t column = before.size() - (before.rfind('\n') == std::string::npos ? 0 : before.rfind('\n') + 1) + 1;
     throw Error(fmt::format("{}: line {}, column {}: not JSON here; look for a missing comma, quote or bracket",
                             path.string(), line, column));
+  } catch (const Json::exception&) {
+    throw Error(fmt::format("{}: holds a number that is too large; write one below 1e308", path.string()));
   }
 }
 

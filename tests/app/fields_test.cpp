@@ -220,8 +220,8 @@ TEST_F(FieldsUsed, PicturesNeedTheRightSceneAndAFolder) {
     return what;
   };
   EXPECT_NE(refused({"--scene", other, "-o", folder.string()}).find("fields of another scene"), std::string::npos);
-  EXPECT_NE(refused({"--scene", box, "-o", fields}).find("no such folder"), std::string::npos);
-  EXPECT_NE(refused({"--scene", box}).find("no such folder"), std::string::npos);
+  EXPECT_NE(refused({"--scene", box, "-o", fields}).find(fields), std::string::npos) << "a file, not a folder";
+  EXPECT_NE(refused({"--scene", box}).find("add -o FOLDER"), std::string::npos);
   EXPECT_NE(refused({"-o", folder.string()}).find("add --scene"), std::string::npos);
   EXPECT_NE(refused({"-D", "door=5"}).find("add --scene"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(folder / "cells.png"));

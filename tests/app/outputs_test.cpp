@@ -79,6 +79,7 @@ TEST_F(Outputs, WrongOnesAreErrorsBeforeTheRender) {
       {{"--log", "there/../a.json"}, "is the same file as the record a.json"},
       {{"--png", "--checkpoint", "a.png"}, "is the same file as --png a.png"},
       {{"--log", "box.xml"}, "is the same file as the scene box.xml"},
+      {{"--log", "room.xml"}, "is the same file as a file of the scene"},
       {{"-o", "a.png", "--half"}, "--half: is for EXR images"},
       {{"-o", "a.png", "--aov", "normal"}, "--aov: is for EXR images"},
       {{"--reference", "b.exr"}, "--reference: the error against it goes into the log"},

@@ -137,6 +137,8 @@ Scene load(const std::string& text, const std::string& folder, const std::string
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", name, error.what()));
   }
+  loader.scene.files = document.files;
+  for (const auto& [path, sum] : loader.sums) loader.scene.files.push_back(path);
   return std::move(loader.scene);
 }
 
