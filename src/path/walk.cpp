@@ -78,7 +78,8 @@ bool start_light(const Scene& scene, const WalkOptions& options, Sampler& sample
 double direct_share(const Scene& scene, const Vertex& x, const LightPoint& point, const Vec3& wi, double distance2,
                     const EmissionPdf& emission) {
   double direct;
-  if (x.guide.blocked) {  // only merged, with what sees light from here: bent normals beside it
+  // Where the normals disagree nothing scatters but what is merged, beside it, by a normal that is bent otherwise.
+  if (x.guide.blocked) {
     Guide flat = x.guide;
     flat.frame.n = flat.ng;
     direct = pdf_next_event(scene, flat, x.p, point, wi);
