@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "ajar/core/error.h"
+#include "ajar/core/files.h"
 #include "arguments.h"
 #include "commands.h"
 

@@ -66,7 +66,7 @@ std::string interruption(const RenderArguments& a, const Film& film) {
 
 void warn(const Run& run, const RenderState& state) {
   const bool young = is_guided(run.options.integrator) && state.film.dropped == 0;
-  if (const uint32_t n = young ? traced_one_in(state.learning, state.film) : 1; n > 1)
+  if (young && traced_one_in(state.learning, state.film) > 1)
     fmt::print(stderr,
                "ajar: warning: most pixels have no sample: the first four passes of a guided render teach it, and "
                "trace few pixels; give it more time, or --spp 4 or more\n");
