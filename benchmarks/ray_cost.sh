@@ -1,5 +1,5 @@
 #!/bin/sh
-# What a ray costs with all that hangs on it, by scene and integrator, in CPU ns: what `ajar plan` reckons with (plan.cpp).
+# What a ray costs with all that hangs on it, by scene and integrator, in CPU ns: what `ajar plan` and guided renders reckon with (trials.cpp).
 # Usage: ray_cost.sh AJAR [SECONDS [SCENE.xml ...]]    one thread; 8 s each; all scenes that are there
 set -e
 ajar=$1 seconds=${2:-8}
@@ -9,14 +9,15 @@ shared=${AJAR_SHARED_SCENES:-$root/../shared/scenes}
 folder=$(mktemp -d)
 trap 'rm -r "$folder"' EXIT
 for file in "$@"; do
-  for integrator in path guided-path bdpt guided-bdpt; do
-    "$ajar" render "$file" --integrator $integrator --size 80x60 --cpu-time "${seconds}s" --threads 1 -q -o "$folder/$integrator.exr" || continue 2
+  for integrator in path guided-path bdpt guided-bdpt guided-vcm; do
+    case $integrator in guided*) all="--plan all" ;; *) all= ;; esac
+    "$ajar" render "$file" --integrator $integrator $all --size 80x60 --cpu-time "${seconds}s" --threads 1 -q -o "$folder/$integrator.exr" || continue 2
   done
   python3 - "$file" "$folder" <<'TABLE'
 import json, os, sys
 file, folder = sys.argv[1:]
 row = []
-for way in ('path', 'guided-path', 'bdpt', 'guided-bdpt'):
+for way in ('path', 'guided-path', 'bdpt', 'guided-bdpt', 'guided-vcm'):
     out = json.load(open(f'{folder}/{way}.json'))
     cpu = sum(out['cpu_seconds'][k] for k in ('trace', 'learn', 'rebuild'))
     row.append((1e9 * cpu / sum(out['rays'].values()), 1e6 * cpu / out['spp'] / out['options']['width'] / out['options']['height']))

@@ -76,6 +76,15 @@ void warn(const Run& run, const RenderState& state) {
   fmt::print(stderr, "\n");
 }
 
+void note_plain(const RenderArguments& a, const Run& run, const RenderState& state) {
+  const Plain& p = state.plain;
+  if (a.quiet || !p.taken || !may_leave_out(run.options) || state.film.passes <= p.passes) return;
+  fmt::print(stderr,
+             "ajar: note: after {} passes path tracing took over from {}: it needs {:.2g} times the time to equal "
+             "error here; --plan all goes on guiding\n",
+             p.passes, run.options.integrator, p.ratio);
+}
+
 // A state to go on from: new, or what a checkpoint or a file of fields brings.
 RenderState begin(const RenderArguments& a, Scene& scene, const Run& run) {
   RenderState state = start_render(scene, run.options);
@@ -170,6 +179,7 @@ void run_render(RenderArguments a) {
   Log log = open_log(a, std::move(reference));
   trace(a, scene, accel, run, state, log);
   write_all(a, scene, accel, run, state, log);
+  note_plain(a, run, state);
   warn(run, state);
   if (run.interrupted) throw Interrupted{interruption(a, state.film)};
   if (!a.versus.empty()) hold_against(a, scene, accel, run, state);

@@ -123,8 +123,9 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
                 "path, bdpt, light, guided-path, guided-bdpt, vcm, guided-vcm, photon, vpl or plain-vpl (default: the "
                 "scene's, else what the plan says)");
   c->add_option("--plan", a->plan,
-                "what to use: auto (a short pilot decides), all, none, or a list of light-subpaths, camera-guiding, "
-                "light-guiding (default: auto where no integrator is named)");
+                "what to use: auto (a short pilot decides), all (to the end: path tracing never takes over from what "
+                "guides), none, or a list of light-subpaths, camera-guiding, light-guiding (default: auto where no "
+                "integrator is named)");
   c->add_option("--spp", a->spp,
                 "samples per pixel; of --spp, --time, --cpu-time and --noise the first that is reached ends the render "
                 "(default: the scene's spp, else 64)")
@@ -193,7 +194,8 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
 
 bool plans(const RenderArguments& a, const Scene& scene) {
   if (a.plan.empty()) return a.integrator.empty() && scene.hints.integrator.empty() && a.resume.empty();
-  if (!a.integrator.empty()) throw Error("--plan: chooses the integrator; leave out either this or --integrator");
+  if (!a.integrator.empty() && a.plan != "all")
+    throw Error("--plan: chooses the integrator; leave out either this or --integrator, or write --plan all");
   if (a.plan != "auto") return false;
   if (!a.resume.empty())
     throw Error("--plan auto: a checkpoint goes on as it began; name its integrator, which its record has");
@@ -216,6 +218,7 @@ RenderOptions render_options(const RenderArguments& a, Scene& scene, bool planne
   o.heuristic = a.heuristic == "balance" ? Heuristic::balance : Heuristic::power;
   o.sampler = a.sampler == "independent" ? SamplerKind::independent : SamplerKind::sobol;
   o.techniques = !a.techniques.empty();
+  o.leaves_out = (a.plan.empty() || a.plan == "auto") && a.save_fields.empty();
   o.next_event = !a.no_next_event;
   if (a.merge_radius) o.merge_radius = parse_merge_radius(*a.merge_radius, o.integrator);
   o.final_gather = a.final_gather;

@@ -57,6 +57,7 @@ nlohmann::ordered_json options_json(const Run& run, const Film& film) {
   if (is_merging(o.integrator)) j["merge_radius"] = o.merge_radius;
   if (o.final_gather > 0) j["final_gather"] = o.final_gather;
   if (!is_guided(o.integrator)) return j;
+  j["leaves_out"] = may_leave_out(o);
   j["guide"] = name_of(learn_options(o).guided);
   j["field_memory"] = o.learn.memory;
   j["field_structure"] = structure_names[size_t(o.learn.structure)];
@@ -114,6 +115,8 @@ nlohmann::ordered_json summary(const Run& run, const RenderState& state) {
   if (run.options.noise > 0)
     j["noise"] = {{"target", run.options.noise}, {"reached", error.relmse <= run.options.noise}};
   if (run.planned) j["plan"] = to_json(run.plan);
+  if (const Plain& p = state.plain; p.passes > 0)
+    j["path_tracing"] = {{"took_over", p.taken}, {"after_passes", p.passes}, {"time_to_equal_error", p.ratio}};
   if (!run.versus.integrator.empty()) j["versus"] = to_json(run.versus, state);
   add_account(j, state);
   return j;
@@ -131,7 +134,8 @@ Metadata metadata(const Run& run, const RenderState& state) {
 
 std::string checkpoint_key(const Run& run, const Film& film) {
   nlohmann::ordered_json o = options_json(run, film);
-  for (const char* budget : {"spp", "seconds", "cpu_seconds", "noise", "threads", "load_fields", "save_fields"})
+  for (const char* budget :
+       {"spp", "seconds", "cpu_seconds", "noise", "threads", "leaves_out", "load_fields", "save_fields"})
     o.erase(budget);
   return fmt::format("{},{},files with checksum {:016x},{}", version,
                      std::filesystem::path(run.scene_path).filename().string(), run.content, in_text(o));

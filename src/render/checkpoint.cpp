@@ -7,7 +7,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind checkpoint_kind = {"AJARck12", "checkpoint", "render once with --checkpoint",
+constexpr FileKind checkpoint_kind = {"AJARck13", "checkpoint", "render once with --checkpoint",
                                       "start again without --resume"};
 
 // One list of fields for both ways.
@@ -48,6 +48,13 @@ void read(Reader& r, Learning& l) {
   read(r, l.sightings);
 }
 
+template <class Io, class State>
+void plain_fields(Io& io, State& plain) {
+  io.value(plain.taken), io.value(plain.settled), io.value(plain.passes), io.value(plain.ratio);
+  io.value(plain.missed), io.value(plain.rays), io.value(plain.seen.passes), io.array(plain.seen.sum),
+      io.array(plain.seen.half);
+}
+
 void read(Reader& r, Pyramid& pyramid) {
   for (size_t n = r.count(2 * sizeof(int)); n > 0; --n) {
     std::pair<int, int> st;
@@ -76,6 +83,7 @@ void save_checkpoint(const std::string& path, const std::string& key, const Rend
     for (const auto& [st, layer] : state.pyramid.layers)
       w.value(st.first), w.value(st.second), w.array(layer.raw), w.array(layer.weighted);
     w.value(state.pixels_per_light);
+    plain_fields(w, state.plain);
     write(w, state.learning);
   });
 }
@@ -100,6 +108,8 @@ void load_checkpoint(const std::string& path, const std::string& key, RenderStat
   if (!state.pyramid.kept) state.pyramid = {};
   r.value(state.pixels_per_light);
   r.require(state.pixels_per_light == RenderState::most_light || state.pixels_per_light == RenderState::least_light);
+  plain_fields(r, state.plain);
+  r.require(state.plain.seen.half.size() == state.plain.seen.sum.size());
   read(r, state.learning);
   r.finish();
 }

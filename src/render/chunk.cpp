@@ -43,14 +43,15 @@ bool trace_half(const Job& job, Sample sample, uint32_t recorded, Scratch& scrat
   return scratch.splats->size() > splats;
 }
 
-void trace_pixel(const Job& job, Film& film, Sample& sample, bool splat, Scratch& scratch) {
+// What the sample brings its pixel, filtered.
+Rgb trace_pixel(const Job& job, Sample& sample, bool splat, Scratch& scratch) {
   const size_t splats = scratch.splats->size();
   scratch.clock = is_timed(sample) ? clock_ticks() : 0;
   job.trace(job, sample, scratch);
   if (!accept(sample.value, sample, scratch)) sample.value = Rgb(0);
   ++scratch.counters.camera_paths;
   scratch.counters.zero_paths += is_black(sample.value) && !splat && scratch.splats->size() == splats;
-  film.camera[sample.path] = sample.value * sample.filter;
+  return sample.value * sample.filter;
 }
 
 // A number of the chunk's own in this pass, in [0, 1).
@@ -91,7 +92,13 @@ void trace_light_halves(const Job& job, Film& film, uint32_t chunk, Scratch& scr
 
 void trace_camera_halves(const Job& job, Film& film, Scratch& scratch) {
   if (job.vpls) start(job.vpls->store, scratch.visibility);
-  for (auto& [sample, splat] : scratch.halves->samples) trace_pixel(job, film, sample, splat, scratch);
+  for (auto& [sample, splat] : scratch.halves->samples)
+    film.camera[sample.path] = trace_pixel(job, sample, splat, scratch);
+}
+
+Rgb trace_alone(const Job& job, const Film& film, uint32_t pixel, Scratch& scratch) {
+  Sample sample = make_sample(job, film, int(pixel) % film.width, int(pixel) / film.width);
+  return trace_pixel(job, sample, false, scratch);
 }
 
 }  // namespace ajar

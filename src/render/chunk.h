@@ -12,5 +12,8 @@ uint32_t share_of(const Job& job, const Film& film);
 void trace_light_halves(const Job& job, Film& film, uint32_t chunk, Scratch& scratch);
 /// What the samples of the scratch's halves see.
 void trace_camera_halves(const Job& job, Film& film, Scratch& scratch);
+/// What a camera sample of a pixel brings in the film's pass at hand, filtered, of a job without light subpaths; the
+/// film stays as it is.
+Rgb trace_alone(const Job& job, const Film& film, uint32_t pixel, Scratch& scratch);
 
 }  // namespace ajar

@@ -14,6 +14,7 @@
 
 namespace ajar {
 
+struct RenderState;
 struct Job;
 struct Sample;
 struct Scratch;
@@ -132,6 +133,12 @@ void place_vpls(const Job&, uint32_t pass, std::vector<Scratch>&, Vpls&);
 void trace_light_half(const Job&, Sample&, Scratch&);
 
 void trace_photon(const Job&, Sample&, Scratch&);
+
+/// The job of path tracing in a guided integrator's place: as path would have it, on the same film.
+Job plainly(Job job);
+/// After 4, 8, 16 ... 64 passes of a guided integrator: whether path tracing takes over, in RenderState::plain (L2).
+/// Scratches' counters are left empty.
+void try_plain(const Job& job, const std::string& integrator, std::vector<Scratch>& scratches, RenderState& state);
 
 /// Beyond the first vertex at which a camera subpath is merged, it is merged with one light subpath in so many: those
 /// merges share what found the vertex, and more of them do not help.

@@ -14,17 +14,16 @@
 namespace ajar {
 namespace {
 
-// From the simplest to the fullest. What a ray costs with all that hangs on it: benchmarks/ray_cost.sh (results.md).
+// From the simplest to the fullest.
 struct Candidate {
   const char* name;
-  double ray;     // [us]
   double sample;  // [us] about, before it is measured: for the pilot's size
   bool light_subpaths, guided;
 };
-constexpr Candidate candidates[] = {{"path", 0.23, 2, false, false},
-                                    {"guided-path", 0.42, 5, false, true},
-                                    {"bdpt", 0.245, 6.5, true, false},
-                                    {"guided-bdpt", 0.44, 10, true, true}};
+constexpr Candidate candidates[] = {{"path", 2, false, false},
+                                    {"guided-path", 5, false, true},
+                                    {"bdpt", 6.5, true, false},
+                                    {"guided-bdpt", 10, true, true}};
 constexpr uint32_t trial_passes = 12;    // that count
 constexpr double least_pixels = 600;     // below, a pilot says little
 constexpr double first_guess = 20;       // CPU seconds of a render whose end its noise alone decides
@@ -67,7 +66,7 @@ Trial run_trial(const Scene& scene, const Accel& accel, RenderOptions options, c
   options.integrator = c.name;
   options.spp = trial_passes;
   options.seconds = options.cpu_seconds = options.noise = 0;
-  options.techniques = false;
+  options.techniques = options.leaves_out = false;
   options.learn.train = 0;
   RenderState state = start_render(scene, options);
   CellTable& table = state.learning.fields.table;
@@ -82,7 +81,7 @@ Trial run_trial(const Scene& scene, const Accel& accel, RenderOptions options, c
   const double rays = double(n.camera_rays + n.light_rays + n.shadow_rays);
   Trial t;
   t.integrator = c.name, t.passes = state.film.passes;
-  t.cost = rays / std::max(double(n.camera_paths), 1.0) * c.ray;
+  t.cost = rays / std::max(double(n.camera_paths), 1.0) * ray_cost(c.name);
   return t;
 }
 

@@ -237,6 +237,14 @@ std::vector<std::string> integrator_names() {
 
 bool is_guided(const std::string& integrator) { return find_integrator(integrator).guided; }
 
+bool may_leave_out(const RenderOptions& o) {
+  const Integrator& integrator = find_integrator(o.integrator);
+  const LearnOptions usual;
+  const bool as_usual = o.learn.train == 0 && o.learn.guided == usual.guided && o.learn.rule == usual.rule &&
+                        o.learn.structure == usual.structure && o.learn.forget == usual.forget;
+  return o.leaves_out && integrator.guided && !integrator.vpls && !o.techniques && as_usual;
+}
+
 bool learns(const RenderOptions& options) { return is_guided(options.integrator) || options.learn_lights; }
 bool is_merging(const std::string& integrator) { return find_integrator(integrator).merges; }
 bool has_strategies(const std::string& integrator) {
@@ -302,6 +310,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
     job.guided = true;
     job.walk.inner_share = film.splats ? guided_joins : 0;
   }
+  const bool leaving_out = may_leave_out(options);
   double wall0 = 0, cpu0 = 0;
   const auto start_clocks = [&] {
     wall0 = wall_seconds() - stats.seconds;
@@ -336,11 +345,15 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   };
   while (!out_of_budget()) {
     const uint32_t from = film.chunks;
-    job.walk.merging = merging ? merging_of(scene, options, film, equal_chunks(all)) : Merging{};
+    if (leaving_out && state.learning.fields.generation >= blind_generations)
+      threads.run([&] { try_plain(job, options.integrator, scratches, state); });
+    const bool plain = leaving_out && state.plain.taken;
+    if (plain) batch.halves.clear();
+    job.walk.merging = merging && !plain ? merging_of(scene, options, film, equal_chunks(all)) : Merging{};
     job.walk.merging.paths /= share_of(job, film);
     threads.run([&] { set_light_paths(joined, state, job); });
-    const uint32_t count = merging ? std::min(equal_chunks(all), all - from)
-                                   : std::min({batch_chunks, all - from, affordable_chunks(options, state)});
+    const uint32_t count = merging && !plain ? std::min(equal_chunks(all), all - from)
+                                             : std::min({batch_chunks, all - from, affordable_chunks(options, state)});
     batch.splats.resize(count);
     batch.strategies.resize(count);
     batch.ledgers.assign(count, {});
@@ -350,6 +363,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
     threads.run([&] {
       Job job_now = joins_vpls ? with_vpls(job, film, scratches, vpls) : job;
       job_now.trace = trace;
+      if (plain) job_now = plainly(job_now);
       for (uint32_t i = 0; i < count; ++i) batch.splats[i].clear(), batch.strategies[i].clear();
       if (joins_vpls) std::copy_n(vpls.splats.begin() + from, count, batch.splats.begin());
       if (job.walk.merging.paths > 0) {
@@ -376,7 +390,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
       s.counters = {};
       s.rejected = 0;
     }
-    if (job.learning && film.chunks == 0) threads.run([&] { teach(scene, state, options); });
+    if (job.learning && !plain && film.chunks == 0) threads.run([&] { teach(scene, state, options); });
     // Who watches, measuring errors perhaps, does so on his own time.
     read_clocks();
     const bool go_on = !monitor || monitor(state);

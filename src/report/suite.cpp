@@ -20,6 +20,7 @@ constexpr double longest = 1e7;  // seconds
 const std::vector<std::string> heuristics = {"power", "balance"}, samplers = {"sobol", "independent"};
 const std::vector<std::string> structures(std::begin(structure_names), std::end(structure_names)),
     rules(std::begin(rule_names), std::end(rule_names)), rates = {"recent", "visits"};
+const std::vector<std::string> plans = {"auto", "all"};  // whether a guided integrator leaves out what does not pay
 const std::vector<std::string> light_choices = {"tree", "learned"};
 const std::vector<std::string> guided = {"both", "camera", "light"};  // in the order of the enumerators
 
@@ -45,6 +46,8 @@ const Option options_table[] = {
      [](const RenderOptions& o) { return Json(samplers[o.sampler == SamplerKind::sobol ? 0 : 1]); }},
     {"roulette_depth", [](RenderOptions& o, const Element& e) { o.roulette_depth = int(integer(e, 1, deepest)); },
      [](const RenderOptions& o) { return Json(o.roulette_depth); }},
+    {"plan", [](RenderOptions& o, const Element& e) { o.leaves_out = choice(e, plans) == 0; },
+     [](const RenderOptions& o) { return Json(plans[o.leaves_out || !is_guided(o.integrator) ? 0 : 1]); }},
     {"guide", [](RenderOptions& o, const Element& e) { o.learn.guided = Guided(choice(e, guided)); },
      [](const RenderOptions& o) { return Json(guided[size_t(o.learn.guided)]); }},
     {"field_memory",
@@ -77,8 +80,15 @@ std::vector<std::string> option_keys(std::vector<std::string> keys) {
   return keys;
 }
 
-RenderOptions read_options(const Element& e) {
+// As ajar render has them.
+RenderOptions usual_options() {
   RenderOptions options;
+  options.leaves_out = true;
+  return options;
+}
+
+RenderOptions read_options(const Element& e) {
+  RenderOptions options = usual_options();
   get(e, "integrator", fmt::format("write one of {}", fmt::join(integrator_names(), ", ")));
   for (const Option& option : options_table)
     if (const auto given = find(e, option.key)) option.set(options, *given);
@@ -281,7 +291,7 @@ Json to_json(const Budget& budget) {
 Json options_json(const RenderOptions& options, bool all) {
   Json json;
   for (const Option& option : options_table)
-    if (all || &option == options_table || option.show(options) != option.show({}))
+    if (all || &option == options_table || option.show(options) != option.show(usual_options()))
       json[option.key] = option.show(options);
   return json;
 }

@@ -231,7 +231,7 @@ TEST(SuiteOptions, ThoseThatDifferFromTheirDefaults) {
   EXPECT_EQ(options_json(options, false).dump(), R"({"integrator":"path"})");
   options.sampler = SamplerKind::independent;
   EXPECT_EQ(options_json(options, false).dump(), R"({"integrator":"path","sampler":"independent"})");
-  EXPECT_EQ(options_json(options).size(), 13u);
+  EXPECT_EQ(options_json(options).size(), 14u);
 }
 
 }  // namespace

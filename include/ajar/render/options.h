@@ -29,6 +29,7 @@ struct RenderOptions {
   int final_gather = 0;    ///< of photon: rays that bring indirect light to the first vertex; 0: light vertices there
   LearnOptions learn;      ///< guided integrators, and others that learn lights
   bool learn_lights = false;  ///< path and bdpt: learn which lights cells see (LearnOptions::lights), and nothing else
+  bool leaves_out = false;    ///< see may_leave_out
   bool techniques = false;    ///< keep an image of every (s, t) with s + t <= most_vertices
 };
 
@@ -45,6 +46,9 @@ std::vector<std::string> integrator_names();
 bool is_guided(const std::string& integrator);
 /// Whether anything is learned.
 bool learns(const RenderOptions& options);
+/// Whether path tracing takes over from a guided integrator where it is seen to need less time to equal error (L2):
+/// RenderOptions::leaves_out, as long as nobody asks for images of strategies, or for fields of another kind.
+bool may_leave_out(const RenderOptions& options);
 /// Whether it merges light vertices with camera vertices; throws Error for an unknown integrator.
 bool is_merging(const std::string& integrator);
 /// Whether it tells by which strategy light was found; throws Error for an unknown integrator.

@@ -8,6 +8,7 @@
 #include "ajar/render/learning.h"
 #include "ajar/render/ledger.h"
 #include "ajar/render/options.h"
+#include "ajar/render/plain.h"
 
 namespace ajar {
 
@@ -30,6 +31,7 @@ struct RenderState {
   /// ... passes.
   uint32_t pixels_per_light = most_light;
   static constexpr uint32_t most_light = 2, least_light = 4;  ///< in noisy images, and in others
+  Plain plain;                                                ///< when RenderOptions::leaves_out
 };
 
 /// Seen between batches of chunks, a few times a second at most for large images; return false to stop. May be empty.

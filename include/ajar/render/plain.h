@@ -1,0 +1,40 @@
+// Enters: the image of a guided integrator after 4, 8, 16 ... passes, and some of its pixels as path tracing sees them.
+// Leaves: whether plain path tracing needs less time to equal error, so that it does the rest.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace ajar {
+
+/// Luminance of the pixels of squares of plain_side x plain_side pixels, one after another: sums over passes, and over
+/// even ones of them.
+struct PassHalves {
+  uint32_t passes = 0;  ///< even
+  std::vector<double> sum, half;
+};
+inline constexpr int plain_side = 8;
+
+/// relMSE of images exposed to a mean of a fifth.
+struct PlainLook {
+  double guided = 0;  ///< of the guided image, from the difference of its halves, without the worst 0.1 % of pixels
+  double plain = 0;   ///< of path tracing's, and twice the standard deviation of that
+  double missed = 0;  ///< of what path tracing has not seen and the guided image has, at least
+  double bias = 0;    ///< by which whole squares of the guided image differ from path tracing's, beyond noise
+};
+PlainLook compare_halves(const PassHalves& guided, const PassHalves& plain);
+
+/// Path tracing beside a guided integrator: squares spread over the film, in as much time as the guided passes of their
+/// pixels took. (L2)
+struct Plain {
+  bool taken = false;    ///< path tracing does the rest of the passes
+  bool settled = false;  ///< it is not looked at again
+  uint32_t passes = 0;   ///< of the image when it was last looked at
+  double ratio = 0;      ///< its error over the guided integrator's after equal time, then; 0: not known
+  double missed = 0;     ///< the greatest PlainLook::missed of a sample
+  uint64_t rays = 0;     ///< that it took
+  PassHalves seen;
+};
+
+}  // namespace ajar

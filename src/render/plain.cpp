@@ -1,0 +1,187 @@
+#include "ajar/render/plain.h"
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+
+#include "ajar/core/parallel.h"
+#include "ajar/render/render.h"
+#include "ajar/render/trials.h"
+#include "chunk.h"
+#include "job.h"
+
+namespace ajar {
+namespace {
+
+constexpr uint32_t first_look = 4, last_look = 64;  // passes
+constexpr uint32_t least_squares = 32, most_squares = 128;
+constexpr uint32_t square = plain_side * plain_side;  // pixels
+constexpr double exposed = 0.2, dark = 0.01;          // as in trials.cpp
+constexpr double least_miss = 0.1;                    // of a square's light
+constexpr double fastest = 16;                        // of path tracing: passes for one of the guided integrator
+// Of the guided integrator's error after equal time: path tracing takes over; less while fields are young.
+constexpr double far_better = 0.7, better = 1.2;
+// It is not looked at again: after so many passes, or at once.
+constexpr double worse = 1.6, much_worse = 2;
+constexpr uint32_t settling = 16;
+// relMSE of a sample. Above, samples are so uneven that a few thousand pixels do not tell their error, and path tracing
+// is not what the scene needs.
+constexpr double tame = 1, wild = 4;
+
+uint64_t ray_count(const Counters& n) { return n.camera_rays + n.light_rays + n.shadow_rays; }
+
+// First pixel of each square: a sixteenth of the film's, as far as the bounds allow.
+std::vector<uint32_t> choose_squares(const Film& film) {
+  const uint32_t across = uint32_t(film.width / plain_side), all = across * uint32_t(film.height / plain_side);
+  const uint32_t count = std::min(std::clamp(all / 16, least_squares, most_squares), all);
+  std::vector<uint32_t> out;
+  for (uint32_t k = 0; k < count; ++k) {
+    const uint32_t i = uint32_t((uint64_t(k) * 2 + 1) * all / (2 * count));
+    out.push_back((i / across * uint32_t(film.width) + i % across) * plain_side);
+  }
+  return out;
+}
+
+uint32_t pixel_of(const Film& film, uint32_t first, uint32_t k) {
+  return first + k / plain_side * uint32_t(film.width) + k % plain_side;
+}
+
+// Path tracing of the passes that are not there yet.
+void trace_to(uint32_t passes, const Job& job, const Film& film, const std::vector<uint32_t>& squares,
+              std::vector<Scratch>& scratches, Plain& plain) {
+  Film at;  // the numbers of a pass, without an image
+  at.x0 = film.x0, at.y0 = film.y0, at.width = film.width, at.height = film.height, at.filter = film.filter;
+  at.dropped = film.dropped;
+  std::vector<Splat> none;
+  std::vector<Ledger> ledgers(scratches.size());
+  for (size_t i = 0; i < scratches.size(); ++i) {
+    scratches[i].splats = &none, scratches[i].strategies = nullptr;
+    scratches[i].ledger = &ledgers[i];
+  }
+  plain.seen.sum.resize(squares.size() * square), plain.seen.half.resize(squares.size() * square);
+  for (at.passes = plain.seen.passes; at.passes < passes; ++at.passes)
+    parallel_for(uint32_t(squares.size()), [&](uint32_t i) {
+      for (uint32_t k = 0; k < square; ++k) {
+        const Rgb value = trace_alone(job, at, pixel_of(film, squares[i], k), scratches[thread_slot()]);
+        plain.seen.sum[i * square + k] += double(luminance(value));
+        if (at.passes % 2 == 0) plain.seen.half[i * square + k] += double(luminance(value));
+      }
+    });
+  plain.seen.passes = at.passes;
+  for (Scratch& s : scratches) {
+    plain.rays += ray_count(s.counters);
+    s.counters = {}, s.rejected = 0;
+  }
+}
+
+PassHalves halves_of(const Film& film, const std::vector<uint32_t>& squares) {
+  PassHalves out;
+  out.passes = film.passes;
+  for (const uint32_t first : squares)
+    for (uint32_t k = 0; k < square; ++k) {
+      const size_t i = pixel_of(film, first, k);
+      out.sum.push_back(luminance(Rgb(film.camera_sum[i] + (film.splats ? film.splat_sum[i] : glm::dvec3(0)))));
+      out.half.push_back(luminance(Rgb(film.half_sum[i])));
+    }
+  return out;
+}
+
+// One half of the passes less the other: what the sum is off by, in expectation.
+double difference(const PassHalves& h, size_t pixel) { return 2 * h.half[pixel] - h.sum[pixel]; }
+
+struct Square {
+  double mean = 0, variance = 0;  // of the mean
+};
+
+Square square_of(const PassHalves& h, size_t first) {
+  const double samples = double(h.passes) * square;
+  Square s;
+  for (size_t i = first; i < first + square; ++i) {
+    s.mean += h.sum[i] / samples;
+    s.variance += sqr(difference(h, i) / samples);
+  }
+  return s;
+}
+
+void trim(std::vector<double>& errors) {
+  const auto kept = errors.end() - std::ptrdiff_t(errors.size() / 1000);
+  if (kept != errors.end()) std::nth_element(errors.begin(), kept, errors.end());
+  errors.erase(kept, errors.end());
+}
+
+struct Mean {
+  double value = 0, deviation = 0;  // standard deviation of the mean
+};
+
+Mean mean_of(const std::vector<double>& x) {
+  const double n = double(x.size()), mean = std::accumulate(x.begin(), x.end(), 0.0) / n;
+  const double square_sum = std::accumulate(x.begin(), x.end(), 0.0, [](double a, double e) { return a + sqr(e); });
+  return {mean, std::sqrt(std::max(square_sum / n - sqr(mean), 0.0) / n)};
+}
+
+}  // namespace
+
+PlainLook compare_halves(const PassHalves& guided, const PassHalves& plain) {
+  PlainLook out;
+  const double pixels = double(guided.sum.size()), n = guided.passes;
+  const double mean = std::accumulate(guided.sum.begin(), guided.sum.end(), 0.0) / (n * pixels);
+  if (!(mean > 0) || !(mean < infinity)) return out;
+  const double scale = exposed / mean;
+  std::vector<double> errors[2], biases;
+  for (size_t first = 0; first < guided.sum.size(); first += square) {
+    const Square a = square_of(guided, first), b = square_of(plain, first);
+    const double level = scale * a.mean;
+    // A pixel counts half, so that fireflies hardly excuse themselves.
+    for (size_t i = first; i < first + square; ++i) {
+      const double of = sqr(0.5 * (level + scale * guided.sum[i] / n)) + dark;
+      errors[0].push_back(sqr(scale * difference(guided, i) / n) / of);
+      errors[1].push_back(sqr(scale * difference(plain, i) / plain.passes) / of);
+    }
+    const double off = a.mean - b.mean, variance = a.variance + b.variance;
+    biases.push_back(sqr(scale) * (sqr(off) - variance) / (sqr(level) + dark));
+    // It came in no sample of the square, or in few: so rare it is.
+    if (std::abs(off) > least_miss * a.mean && sqr(off) > 9 * variance)
+      out.missed += std::copysign(sqr(scale * off), off) / (sqr(level) + dark) * sqr(double(square)) / pixels;
+  }
+  trim(errors[0]), trim(errors[1]);
+  const Mean own = mean_of(errors[0]), other = mean_of(errors[1]), bias = mean_of(biases);
+  out.guided = own.value, out.plain = other.value + 2 * other.deviation;
+  out.missed = std::max(out.missed, 0.0), out.bias = std::max(bias.value - bias.deviation, 0.0);
+  return out;
+}
+
+Job plainly(Job job) {
+  job.trace = trace_path, job.light_half = nullptr;
+  job.guided = false, job.learning = nullptr, job.training = nullptr;
+  job.walk.fields = nullptr, job.walk.merging = {}, job.walk.inner_share = 0;
+  return job;
+}
+
+void try_plain(const Job& job, const std::string& integrator, std::vector<Scratch>& scratches, RenderState& state) {
+  Plain& plain = state.plain;
+  const Film& film = state.film;
+  const bool due = std::has_single_bit(film.passes) && film.passes >= first_look && film.passes <= last_look;
+  if (plain.settled || film.chunks > 0 || !due || plain.passes == film.passes) return;
+  const std::vector<uint32_t> squares = choose_squares(film);
+  if (squares.empty()) return;
+  const Job without = plainly(job);
+  trace_to(film.passes, without, film, squares, scratches, plain);
+  const Counters& n = state.stats.counters;
+  const double cost = ray_cost(integrator) * double(ray_count(n)) / double(n.camera_paths);
+  const double samples = double(plain.seen.passes) * double(plain.seen.sum.size());
+  const double pace = std::clamp(cost * samples / (ray_cost("path") * double(plain.rays)), 1.0, fastest);
+  trace_to(uint32_t(pace * film.passes / 2) * 2, without, film, squares, scratches, plain);
+  const PlainLook look = compare_halves(halves_of(film, squares), plain.seen);
+  const double guided = look.guided + (is_merging(integrator) ? look.bias : 0), passes = plain.seen.passes;
+  plain.missed = std::max(plain.missed, look.missed * passes);
+  const double error = look.plain + plain.missed / passes;
+  plain.passes = film.passes;
+  plain.ratio = guided > 0 ? error / guided : 0;
+  const double enough = film.passes == first_look ? far_better : better;
+  plain.taken = plain.ratio > 0 && plain.ratio < enough && error * passes < tame;
+  plain.settled = plain.taken || film.passes == last_look || plain.ratio > much_worse || error * passes > wild ||
+                  (film.passes >= settling && plain.ratio > worse);
+  if (plain.settled) plain.seen = {};
+}
+
+}  // namespace ajar

@@ -1,0 +1,185 @@
+// When path tracing takes over from a guided integrator, and that nothing else of the image changes.
+#include <algorithm>
+
+#include "ajar/core/sampler.h"
+#include "bytes.h"
+
+namespace ajar {
+namespace {
+
+using namespace kit;
+
+constexpr uint32_t passes = 16;
+constexpr size_t square = plain_side * plain_side;
+
+double uniform(uint64_t key) { return double(hash(key, 7) >> 11) * 0x1p-53; }
+
+// Of mean 1: a pass brings a pixel 1 / chance with that chance, else 0.
+PassHalves flicker(double chance, uint64_t key, size_t squares = 128) {
+  PassHalves h;
+  h.passes = passes;
+  for (size_t i = 0; i < squares * square; ++i) {
+    double sum = 0, half = 0;
+    for (uint32_t pass = 0; pass < passes; ++pass) {
+      const double x = uniform((key * passes + pass) << 32 | i) < chance ? 1 / chance : 0;
+      sum += x, half += pass % 2 == 0 ? x : 0;
+    }
+    h.sum.push_back(sum), h.half.push_back(half);
+  }
+  return h;
+}
+
+PassHalves times(PassHalves h, double factor, size_t squares) {
+  for (size_t i = 0; i < squares * square; ++i) h.sum[i] *= factor, h.half[i] *= factor;
+  return h;
+}
+
+TEST(Plain, ErrorsAreThoseOfASample) {
+  const PlainLook look = compare_halves(flicker(0.5, 1), flicker(0.2, 2));
+  // Variance is 1 / chance - 1, and 0.01 counts at a mean of a fifth; the mean that errors are held against is a little
+  // noisy.
+  EXPECT_NEAR(passes * look.guided, 1 / 1.25, 0.06);
+  EXPECT_NEAR(passes * look.plain, 4 / 1.25, 0.3);
+  EXPECT_EQ(look.missed, 0);
+  EXPECT_LT(passes * look.bias, 0.02);
+}
+
+TEST(Plain, WhatIsNotSeenIsAsRareAsItMustBe) {
+  // One square in 128 lacks half of its light: it came in less than one of 64 * 16 samples.
+  const PassHalves all = flicker(0.5, 1), some = times(flicker(0.5, 2), 0.5, 1);
+  const PlainLook look = compare_halves(all, some);
+  EXPECT_NEAR(look.missed, 0.25 / 1.25 * square / 128, 0.025);
+  EXPECT_EQ(compare_halves(some, all).missed, 0) << "that the guided image lacks light is not path tracing's fault";
+}
+
+TEST(Plain, BiasIsSeenWhereNoiseIsNot) {
+  const PlainLook look = compare_halves(times(flicker(0.9, 1), 1.1, 64), flicker(0.9, 2));
+  EXPECT_NEAR(look.bias, 0.5 * 0.01 / 1.25, 0.0016);
+}
+
+TEST(Plain, BlackImagesSayNothing) {
+  const PassHalves black{passes, std::vector<double>(square), std::vector<double>(square)};
+  const PlainLook look = compare_halves(black, black);
+  EXPECT_EQ(look.guided, 0);
+  EXPECT_EQ(look.plain, 0);
+}
+
+RenderOptions sparing(const std::string& integrator, uint32_t spp) {
+  RenderOptions o = options_of(integrator, spp);
+  o.leaves_out = true;
+  return o;
+}
+
+double mean_of(const Film& film) {
+  double sum = 0;
+  for (const float x : develop(film).pixels) sum += double(x);
+  return sum / double(film.pixels());
+}
+
+TEST(Plain, TakesOverWhereLightIsEasyToFind) {
+  Scene scene = stage(64);
+  finish(scene);
+  const Accel accel(scene);
+  for (const char* integrator : {"guided-bdpt", "guided-path"}) {
+    const RenderState state = rendered(scene, accel, sparing(integrator, 20));
+    EXPECT_TRUE(state.plain.taken) << integrator << " " << state.plain.ratio;
+    EXPECT_LE(state.plain.passes, 16u);
+    EXPECT_TRUE(state.plain.seen.sum.empty());
+  }
+}
+
+// In the midst of merging, too.
+TEST(Plain, GoesOnWithoutLightSubpathsAndLessons) {
+  Scene scene = stage(64);
+  finish(scene);
+  const Accel accel(scene);
+  const double truth = mean_of(rendered(scene, accel, options_of("path", 256)).film);
+  for (const char* integrator : {"guided-bdpt", "guided-vcm", "guided-path"}) {
+    RenderOptions o = sparing(integrator, 10);
+    RenderState state = rendered(scene, accel, o);
+    state.plain.taken = state.plain.settled = true;
+    const uint64_t light = state.stats.counters.light_paths;
+    const uint32_t lessons = state.learning.fields.generation;
+    o.spp = 50;
+    render(scene, accel, o, state, {});
+    EXPECT_EQ(state.stats.counters.light_paths, light) << integrator;
+    EXPECT_EQ(state.learning.fields.generation, lessons);
+    EXPECT_EQ(state.film.passes, 50u);
+    EXPECT_NEAR(mean_of(state.film), truth, 0.01 * truth) << integrator;
+  }
+}
+
+// Batches of chunks have another size then.
+TEST(Plain, GoesOnFromManyTilesThatWereMerged) {
+  const Scene scene = strip(true);
+  const Accel accel(scene);
+  RenderOptions o = sparing("guided-vcm", 1);
+  RenderState state = rendered(scene, accel, o);
+  state.plain.taken = state.plain.settled = true;
+  o.spp = 3;
+  render(scene, accel, o, state, {});
+  EXPECT_EQ(state.film.passes, 3u);
+}
+
+// To look costs time and nothing else.
+TEST(Plain, LeavesAnotherImageAsItIs) {
+  const Scene scene = two_rooms(5);
+  const Accel accel(scene);
+  const RenderState looked = rendered(scene, accel, sparing("guided-bdpt", 20));
+  EXPECT_FALSE(looked.plain.taken);
+  EXPECT_GT(looked.plain.passes, 0u);
+  expect_same_bytes(looked, rendered(scene, accel, options_of("guided-bdpt", 20)));
+}
+
+TEST(Plain, IsLeftAloneWhereFieldsAreAskedFor) {
+  RenderOptions o = sparing("guided-bdpt", 8);
+  EXPECT_TRUE(may_leave_out(o));
+  o.techniques = true;
+  EXPECT_FALSE(may_leave_out(o));
+  o = sparing("guided-bdpt", 8), o.learn.train = 8;
+  EXPECT_FALSE(may_leave_out(o));
+  o = sparing("guided-bdpt", 8), o.learn.guided = Guided::camera;
+  EXPECT_FALSE(may_leave_out(o));
+  EXPECT_FALSE(may_leave_out(sparing("vpl", 8)));
+  EXPECT_FALSE(may_leave_out(sparing("bdpt", 8)));
+  EXPECT_FALSE(may_leave_out(options_of("guided-bdpt", 8)));
+}
+
+// With any number of threads, stopped anywhere: before a look, at one, and after path tracing took over.
+TEST(Plain, IsTheSameToTheByte) {
+  Scene scene = stage(64);
+  finish(scene);
+  const Accel accel(scene);
+  RenderOptions o = sparing("guided-bdpt", 24);
+  const RenderState straight = rendered(scene, accel, o);
+  ASSERT_TRUE(straight.plain.taken);
+  o.threads = 1;
+  expect_same_bytes(straight, rendered(scene, accel, o));
+  for (const uint32_t stop : {2u, 4u, 6u, 8u, 20u}) {
+    const File file("plain");
+    o.spp = stop;
+    save_checkpoint(file.path, "key", rendered(scene, accel, o));
+    o.spp = 24;
+    RenderState again = start_render(scene, o);
+    load_checkpoint(file.path, "key", again);
+    render(scene, accel, o, again, {});
+    expect_same_bytes(straight, again);
+    EXPECT_EQ(again.plain.passes, straight.plain.passes) << stop;
+  }
+}
+
+// Images without a square are not looked at.
+TEST(Plain, ImagesOfAnySize) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {7, 5}, {8, 8}, {9, 23}, {300, 3}}) {
+    Scene scene = stage(8);
+    Camera& c = scene.camera;
+    c.width = c.crop_width = width, c.height = c.crop_height = height;
+    finish(scene);
+    const RenderState state = rendered(scene, Accel(scene), sparing("guided-vcm", 10));
+    EXPECT_EQ(state.film.passes, 10u);
+    EXPECT_TRUE(width >= plain_side && height >= plain_side ? state.plain.passes > 0 : state.plain.passes == 0);
+  }
+}
+
+}  // namespace
+}  // namespace ajar
