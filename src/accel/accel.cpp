@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <bit>
 
 #include "ajar/core/error.h"
+#include "ajar/core/sampler.h"
+#include "ajar/scene/cutout.h"
 #include "quadric.h"
 
 namespace ajar {
@@ -14,7 +17,34 @@ namespace {
 struct Quadric {
   const Shape* shape;
   uint32_t id;
+  const Scene* scene;  // of a shape with masks; else null
 };
+struct CutOut {
+  const Scene* scene;
+  uint32_t shape;
+};
+
+uint64_t bits_of(float a, float b) { return uint64_t(std::bit_cast<uint32_t>(a)) << 32 | std::bit_cast<uint32_t>(b); }
+
+// Whether a point of a shape with masks stops a ray. Where a mask is between open and opaque the ray's own bits decide,
+// so that the same ray always goes the same way.
+bool stops(const Scene& scene, const Vec3& o, const Vec3& d, uint32_t shape, uint32_t prim, const Vec2& bary) {
+  const float share = opacity(scene, shape, prim, bary);
+  if (share <= 0 || share >= 1) return share >= 1;
+  uint64_t h = hash(bits_of(o.x, o.y), bits_of(o.z, d.x));
+  h = hash(h, bits_of(d.y, d.z));
+  h = hash(h, uint64_t(shape) << 32 | prim);
+  return to_unit(uint32_t(hash(h, bits_of(bary.x, bary.y)) >> 32)) < share;
+}
+
+void filter_cut_out(const RTCFilterFunctionNArguments* args) {
+  if (!args->valid[0]) return;
+  const auto& cut = *static_cast<const CutOut*>(args->geometryUserPtr);
+  const auto& ray = *reinterpret_cast<const RTCRay*>(args->ray);
+  const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
+  const Vec3 o(ray.org_x, ray.org_y, ray.org_z), d(ray.dir_x, ray.dir_y, ray.dir_z);
+  if (!stops(*cut.scene, o, d, cut.shape, hit.primID, {hit.u, hit.v})) args->valid[0] = 0;
+}
 
 struct DeviceRelease {
   void operator()(RTCDevice d) const { rtcReleaseDevice(d); }
@@ -41,11 +71,18 @@ void quadric_bounds(const RTCBoundsFunctionArguments* args) {
   b.upper_x = hi.x + pad.x, b.upper_y = hi.y + pad.y, b.upper_z = hi.z + pad.z;
 }
 
-bool hit_quadric(const Shape& shape, const RTCRay& ray, double& t, glm::dvec3& p) {
+// The first hit that is not where a mask lets the ray pass.
+bool hit_quadric(const Quadric& quadric, const RTCRay& ray, double& t, glm::dvec3& p) {
+  const Shape& shape = *quadric.shape;
   const glm::dmat4 m(shape.to_object);
   const glm::dvec3 o = m * glm::dvec4(ray.org_x, ray.org_y, ray.org_z, 1),
                    d = m * glm::dvec4(ray.dir_x, ray.dir_y, ray.dir_z, 0);
-  return intersect_quadric(shape.kind, o, d, ray.tnear, ray.tfar, t, p);
+  for (double from = ray.tnear; intersect_quadric(shape.kind, o, d, from, ray.tfar, t, p); from = t) {
+    if (!quadric.scene) return true;
+    const Vec3 origin(ray.org_x, ray.org_y, ray.org_z), direction(ray.dir_x, ray.dir_y, ray.dir_z);
+    if (stops(*quadric.scene, origin, direction, quadric.id, 0, quadric_uv(shape.kind, p))) return true;
+  }
+  return false;
 }
 
 void quadric_intersect(const RTCIntersectFunctionNArguments* args) {
@@ -54,7 +91,7 @@ void quadric_intersect(const RTCIntersectFunctionNArguments* args) {
   auto& rayhit = *reinterpret_cast<RTCRayHit*>(args->rayhit);
   double t;
   glm::dvec3 p;
-  if (!hit_quadric(*quadric.shape, rayhit.ray, t, p)) return;
+  if (!hit_quadric(quadric, rayhit.ray, t, p)) return;
   const Vec2 uv = quadric_uv(quadric.shape->kind, p);
   rayhit.ray.tfar = float(t);
   rayhit.hit.u = uv.x, rayhit.hit.v = uv.y;
@@ -67,7 +104,7 @@ void quadric_occluded(const RTCOccludedFunctionNArguments* args) {
   auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
   double t;
   glm::dvec3 p;
-  if (hit_quadric(*static_cast<const Quadric*>(args->geometryUserPtr)->shape, ray, t, p)) ray.tfar = -infinity;
+  if (hit_quadric(*static_cast<const Quadric*>(args->geometryUserPtr), ray, t, p)) ray.tfar = -infinity;
 }
 
 }  // namespace
@@ -77,6 +114,7 @@ struct Accel::Data {
   EmbreeScene top;
   std::vector<EmbreeScene> groups;
   std::vector<Quadric> quadrics;
+  std::vector<CutOut> cut_outs;
   std::atomic<int64_t> bytes{0};
 };
 
@@ -105,6 +143,12 @@ RTCGeometry mesh_geometry(RTCDevice device, const Mesh& mesh) {
   std::copy(mesh.positions.begin(), mesh.positions.end(), p);
   std::copy(mesh.triangles.begin(), mesh.triangles.end(), t);
   return g;
+}
+
+void set_filter(RTCGeometry g, CutOut& cut) {
+  rtcSetGeometryUserData(g, &cut);
+  rtcSetGeometryIntersectFilterFunction(g, filter_cut_out);
+  rtcSetGeometryOccludedFilterFunction(g, filter_cut_out);
 }
 
 RTCGeometry quadric_geometry(RTCDevice device, const Quadric* quadric) {
@@ -145,15 +189,18 @@ Accel::Accel(const Scene& scene) : data_(std::make_unique<Data>()), first_instan
   rtcSetDeviceMemoryMonitorFunction(device, count_bytes, &data.bytes);
   data.top = new_scene(device);
   for (uint32_t i = 0; i < scene.groups; ++i) data.groups.push_back(new_scene(device));
-  data.quadrics.reserve(scene.shapes.size());
+  data.quadrics.reserve(scene.shapes.size()), data.cut_outs.reserve(scene.shapes.size());
   for (uint32_t i = 0; i < scene.shapes.size(); ++i) {
     const Shape& shape = scene.shapes[i];
     RTCScene into = shape.group == none ? data.top.get() : data.groups[shape.group].get();
-    if (shape.kind == ShapeKind::mesh) {
-      if (!scene.meshes[shape.mesh].triangles.empty()) attach(into, mesh_geometry(device, scene.meshes[shape.mesh]), i);
-    } else {
-      data.quadrics.push_back({&shape, i});
+    if (is_open(scene, shape)) continue;
+    if (shape.kind != ShapeKind::mesh) {
+      data.quadrics.push_back({&shape, i, shape.mask == none ? nullptr : &scene});
       attach(into, quadric_geometry(device, &data.quadrics.back()), i);
+    } else if (!scene.meshes[shape.mesh].triangles.empty()) {
+      RTCGeometry g = mesh_geometry(device, scene.meshes[shape.mesh]);
+      if (shape.mask != none) set_filter(g, data.cut_outs.emplace_back(CutOut{&scene, i}));
+      attach(into, g, i);
     }
   }
   for (auto& group : data.groups) rtcCommitScene(group.get());

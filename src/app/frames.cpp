@@ -101,13 +101,19 @@ std::shared_ptr<const Scene> load_frame(Shooting& s, int frame) {
   return scene;
 }
 
+// Whether the ray tracer may ask the scene whether there is a surface: then it must be of the frame's own.
+bool has_masks(const Scene& scene) {
+  return std::any_of(scene.shapes.begin(), scene.shapes.end(), [](const Shape& shape) { return shape.mask != none; });
+}
+
 Stage set_up(Shooting& s, int frame, const Stage* before) {
   Stage stage;
   Clock clock;
   stage.scene = load_frame(s, frame);
   if (before) stage.moved = find_motion(*before->scene, *stage.scene);
   clock.lap(stage.load_seconds, stage.load_cpu);
-  if (before && before->accel && stage.moved.empty()) {
+  const bool masked = has_masks(*stage.scene) || (before && has_masks(*before->scene));
+  if (before && before->accel && stage.moved.empty() && !masked) {
     stage.accel = before->accel, stage.built_for = before->built_for;
   } else {
     stage.accel = std::make_shared<Accel>(*stage.scene), stage.built_for = stage.scene;

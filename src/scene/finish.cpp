@@ -2,6 +2,7 @@
 
 #include "ajar/core/error.h"
 #include "ajar/core/parallel.h"
+#include "ajar/scene/cutout.h"
 #include "bounds.h"
 #include "solid.h"
 
@@ -96,7 +97,10 @@ void finish(Scene& scene) {
   set_bounds(scene);
   for (Mesh& mesh : scene.meshes) set_packed(mesh);
   prepare_materials(scene);
-  for (Shape& shape : scene.shapes) shape.tangents = wants_tangents(scene, shape.material);
+  for (Shape& shape : scene.shapes) {
+    cut_out(scene, shape);
+    shape.tangents = wants_tangents(scene, shape.material);
+  }
   scene.infinite_lights.clear();
   for (uint32_t i = 0; i < scene.lights.size(); ++i) prepare_light(scene, i);
   set_light_choice(scene, LightChoice::tree);

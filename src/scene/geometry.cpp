@@ -68,6 +68,10 @@ void set_normal(const Triangle& t, Vec3& normal, float& error) {
     set_sliver_normal(t, normal, error);
 }
 
+Vec2 uv_of(const Mesh& mesh, const Triangle& t, const Vec2& b) {
+  return mesh.mapped ? Vec2(t.a.u, t.a.v) * (1 - b.x - b.y) + Vec2(t.b.u, t.b.v) * b.x + Vec2(t.c.u, t.c.v) * b.y : b;
+}
+
 // Position, error, ng and uv of a point of a triangle, in the mesh's space; returns the triangle.
 inline Triangle set_point(const Mesh& mesh, const PackedTriangle& face, Surface& s) {
   const Triangle t{mesh.packed[face.v.x], mesh.packed[face.v.y], mesh.packed[face.v.z]};
@@ -76,7 +80,7 @@ inline Triangle set_point(const Mesh& mesh, const PackedTriangle& face, Surface&
   s.p = t.a.p * a + t.b.p * b.x + t.c.p * b.y;
   s.ng = face.ng;
   s.error = face.error;
-  s.uv = mesh.mapped ? Vec2(t.a.u, t.a.v) * a + Vec2(t.b.u, t.b.v) * b.x + Vec2(t.c.u, t.c.v) * b.y : b;
+  s.uv = uv_of(mesh, t, b);
   return t;
 }
 
@@ -246,6 +250,13 @@ Surface make_surface(const Scene& scene, const Hit& hit, const Vec3& ray_o, cons
   else
     set_quadric_surface(scene, hit, ray_o, ray_d, s);
   return s;
+}
+
+Vec2 texture_point(const Scene& scene, uint32_t shape, uint32_t prim, const Vec2& bary) {
+  if (scene.shapes[shape].kind != ShapeKind::mesh) return bary;
+  const Mesh& mesh = scene.meshes[scene.shapes[shape].mesh];
+  const glm::uvec3 v = mesh.faces[prim].v;
+  return uv_of(mesh, {mesh.packed[v.x], mesh.packed[v.y], mesh.packed[v.z]}, bary);
 }
 
 Surface sample_triangle(const Scene& scene, uint32_t id, uint32_t prim, const Vec2& u, float& pdf) {

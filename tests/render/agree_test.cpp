@@ -211,6 +211,18 @@ Scene with_masks() {
   return finished(std::move(scene));
 }
 
+// It shines where its mask lets light pass, too: there it is no cut-out.
+Scene with_masked_lamp() {
+  Scene scene = stage();
+  Material mask = of_kind(MaterialKind::mask);
+  mask.weight = 0.4f;
+  mask.nested[0] = add_diffuse(scene, Rgb(0.8f));
+  const uint32_t low = add_quad(scene, {-0.5f, -0.4f, -0.3f}, {1, 0, 0.2f}, {0, 0.2f, 0.6f}, add_material(scene, mask));
+  const uint32_t light = add_light(scene, LightKind::area, Rgb(1.5f));
+  scene.lights[light].shape = low, scene.shapes[low].light = light;
+  return finished(std::move(scene));
+}
+
 Scene with_blend(MaterialKind kind) {
   Scene scene = stage();
   const uint32_t diffuse = add_diffuse(scene, {0.7f, 0.4f, 0.1f});
@@ -332,7 +344,8 @@ const Feature features[] = {
      }},
     {"blend", [] { return with_blend(MaterialKind::blend); }},
     {"mixture", [] { return with_blend(MaterialKind::mixture); }},
-    {"mask", with_masks, "pb"},
+    {"mask", with_masks},
+    {"mask_of_lamp", with_masked_lamp, "pb"},
     {"caustic", [] { return caustic(glass, false); }},
     {"caustic_of_point", [] { return caustic(glass, true); }, "blv"},
     {"caustic_of_rough_glass",

@@ -8,8 +8,8 @@
 
 namespace ajar {
 
-/// Ray-tracing structure over a scene, which must outlive it and keep its shapes and meshes unchanged. Safe to query
-/// from many threads.
+/// Ray-tracing structure over a scene, which must outlive it, stay where it is, and keep its shapes, meshes and
+/// materials unchanged. Safe to query from many threads. What a shape's masks let pass is not there (cutout.h).
 class Accel {
  public:
   explicit Accel(const Scene& scene);  ///< throws Error when the ray tracer refuses (memory)

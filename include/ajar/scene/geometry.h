@@ -11,6 +11,8 @@ namespace ajar {
 /// is on the side from which the triangle's vertices run counter-clockwise, in instances as in the group (mirrored or
 /// not).
 Surface make_surface(const Scene& scene, const Hit& hit, const Vec3& ray_o, const Vec3& ray_d);
+/// (u, v) of a hit, as textures read them.
+Vec2 texture_point(const Scene& scene, uint32_t shape, uint32_t prim, const Vec2& bary);
 /// A point uniform by area on a shape that emits; u in [0,1)^2. pdf is the exact density per area, area_pdf of the same
 /// point; 0 where the shape has no area. Fills p, error, ng, uv, bary, shape, prim. (Cylinders under a transform that
 /// is not a similarity about their axis: uniform in angle and height, with the area density that this has.)

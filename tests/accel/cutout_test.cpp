@@ -1,0 +1,141 @@
+// Masks: what they let pass is not there, for rays of all kinds, on meshes, quadrics and instances.
+#include "ajar/scene/cutout.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "ajar/accel/accel.h"
+#include "ajar/core/sampler.h"
+#include "ajar/scene/build.h"
+
+namespace ajar {
+namespace {
+
+uint32_t masked(Scene& scene, const Slot& opacity, uint32_t inner) {
+  Material m;
+  m.kind = MaterialKind::mask;
+  m.weight = opacity, m.nested[0] = inner;
+  return add_material(scene, m);
+}
+
+uint32_t nothing(Scene& scene) {
+  Material m;
+  m.kind = MaterialKind::null;
+  return add_material(scene, m);
+}
+
+// The unit square at z = 0, seen along z.
+Scene screen(const Slot& opacity) {
+  Scene scene;
+  add_quad(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, masked(scene, opacity, add_diffuse(scene, Rgb(0.5f))));
+  finish(scene);
+  return scene;
+}
+
+float uniform(uint64_t key) { return to_unit(uint32_t(hash(key, 11) >> 32)); }
+
+// Share of parallel rays along z that are stopped; a shadow ray must agree with each of them.
+double stopped(const Accel& accel, const Vec2& from, const Vec2& to, int rays = 20000) {
+  int count = 0;
+  for (int i = 0; i < rays; ++i) {
+    const Vec2 at = from + (to - from) * Vec2(uniform(uint64_t(2 * i)), uniform(uint64_t(2 * i + 1)));
+    const Vec3 o(at, 3), d(0, 0, -1);
+    Hit hit;
+    const bool hits = accel.intersect(o, d, 0, infinity, hit);
+    EXPECT_EQ(hits, accel.occluded(o, d, 10));
+    count += hits;
+  }
+  return double(count) / rays;
+}
+
+TEST(CutOut, HolesOfACheckerboardAreOpen) {
+  Scene scene;
+  const Slot board = add_checkerboard(scene, Rgb(1), Rgb(0));
+  add_quad(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, masked(scene, board, add_diffuse(scene, Rgb(0.5f))));
+  add_quad(scene, {0, 0, -1}, {1, 0, 0}, {0, 1, 0}, add_diffuse(scene, Rgb(0.5f)));
+  finish(scene);
+  const Accel accel(scene);
+  int count = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Vec2 at(uniform(uint64_t(2 * i)), uniform(uint64_t(2 * i + 1)));
+    Hit hit;
+    ASSERT_TRUE(accel.intersect(Vec3(at, 3), {0, 0, -1}, 0, infinity, hit));
+    const bool solid = hit.shape == 0;
+    EXPECT_FLOAT_EQ(hit.t, solid ? 3 : 4);
+    if (solid) {
+      EXPECT_EQ(opacity(scene, 0, hit.prim, hit.bary), 1);
+    }
+    count += solid;
+    EXPECT_EQ(solid, accel.occluded(Vec3(at, 3), {0, 0, -1}, 3.5f));
+  }
+  EXPECT_NEAR(count, 500, 60);
+}
+
+TEST(CutOut, AVeilStopsItsShareAndTheSameRaysAgain) {
+  for (const float share : {0.05f, 0.4f, 0.9f}) {
+    const Scene scene = screen(share);
+    EXPECT_NEAR(stopped(Accel(scene), {0, 0}, {1, 1}), share, 0.012) << share;
+  }
+  EXPECT_EQ(stopped(Accel(screen(1.0f)), {0, 0}, {1, 1}, 100), 1);
+  EXPECT_EQ(stopped(Accel(screen(0.0f)), {0, 0}, {1, 1}, 100), 0);
+}
+
+TEST(CutOut, BothSidesOfASphereLetPass) {
+  Scene scene;
+  add_sphere(scene, Vec3(0), 1, masked(scene, 0.4f, add_diffuse(scene, Rgb(0.5f))));
+  finish(scene);
+  EXPECT_NEAR(stopped(Accel(scene), {-0.5f, -0.5f}, {0.5f, 0.5f}), 1 - 0.6 * 0.6, 0.012);
+}
+
+TEST(CutOut, InstancesHaveTheirMasks) {
+  Scene scene = screen(0.4f);
+  scene.groups = 1;
+  scene.shapes[0].group = 0;
+  Instance instance;
+  instance.to_world = glm::translate(Mat4(1), Vec3(5, 0, 0));
+  instance.to_object = glm::inverse(instance.to_world);
+  scene.instances.push_back(instance);
+  finish(scene);
+  EXPECT_NEAR(stopped(Accel(scene), {5, 0}, {6, 1}), 0.4, 0.012);
+}
+
+TEST(CutOut, MasksOfMasksMultiply) {
+  Scene scene;
+  const uint32_t inner = add_diffuse(scene, Rgb(0.5f));
+  add_quad(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, masked(scene, 0.5f, masked(scene, 0.6f, inner)));
+  finish(scene);
+  EXPECT_EQ(scene.shapes[0].material, inner);
+  EXPECT_FLOAT_EQ(opacity(scene, 0, 0, {0.2f, 0.2f}), 0.3f);
+  finish(scene);
+  EXPECT_FLOAT_EQ(opacity(scene, 0, 0, {0.2f, 0.2f}), 0.3f) << "finished twice";
+  scene.shapes[0].material = inner + 1;  // another material now
+  finish(scene);
+  EXPECT_FLOAT_EQ(opacity(scene, 0, 0, {0.2f, 0.2f}), 0.6f);
+}
+
+TEST(CutOut, NothingIsNotThere) {
+  Scene scene;
+  const uint32_t null = nothing(scene);
+  add_quad(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, null);
+  add_quad(scene, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, masked(scene, 0.7f, null));
+  add_sphere(scene, Vec3(0), 1, null);
+  finish(scene);
+  for (const Shape& shape : scene.shapes) EXPECT_TRUE(is_open(scene, shape));
+  EXPECT_EQ(stopped(Accel(scene), {0, 0}, {1, 1}, 100), 0);
+}
+
+TEST(CutOut, LampsKeepTheirMasks) {
+  Scene scene = screen(0.4f);
+  const uint32_t material = scene.shapes[0].mask;
+  scene.shapes[0].material = material, scene.shapes[0].mask = none;
+  scene.shapes[0].light = add_light(scene, LightKind::area, Rgb(1));
+  scene.lights[0].shape = 0;
+  finish(scene);
+  EXPECT_EQ(scene.shapes[0].mask, none);
+  EXPECT_EQ(scene.shapes[0].material, material);
+  EXPECT_EQ(stopped(Accel(scene), {0, 0}, {1, 1}, 100), 1);
+}
+
+}  // namespace
+}  // namespace ajar
