@@ -24,6 +24,8 @@ constexpr double far_better = 0.7, better = 1.2;
 // It is not looked at again: after so many passes, or at once.
 constexpr double worse = 1.6, much_worse = 2;
 constexpr uint32_t settling = 16;
+// Factor on the error of what merges: blur within squares is not seen. By errors against references (results.md).
+constexpr double blur = 1.5;
 // relMSE of a sample. Above, samples are so uneven that a few thousand pixels do not tell their error, and path tracing
 // is not what the scene needs.
 constexpr double tame = 1, wild = 4;
@@ -172,8 +174,9 @@ void try_plain(const Job& job, const std::string& integrator, std::vector<Scratc
   const double pace = std::clamp(cost * samples / (ray_cost("path") * double(plain.rays)), 1.0, fastest);
   trace_to(uint32_t(pace * film.passes / 2) * 2, without, film, squares, scratches, plain);
   const PlainLook look = compare_halves(halves_of(film, squares), plain.seen);
-  const double guided = look.guided + (is_merging(integrator) ? look.bias : 0), passes = plain.seen.passes;
-  plain.missed = std::max(plain.missed, look.missed * passes);
+  const double passes = plain.seen.passes;
+  const double guided = is_merging(integrator) ? blur * (look.guided + look.bias) : look.guided;
+  plain.missed = std::max(look.missed * passes, 0.5 * plain.missed);  // twice the samples would have shown it
   const double error = look.plain + plain.missed / passes;
   plain.passes = film.passes;
   plain.ratio = guided > 0 ? error / guided : 0;

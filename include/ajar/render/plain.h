@@ -32,7 +32,7 @@ struct Plain {
   bool settled = false;  ///< it is not looked at again
   uint32_t passes = 0;   ///< of the image when it was last looked at
   double ratio = 0;      ///< its error over the guided integrator's after equal time, then; 0: not known
-  double missed = 0;     ///< the greatest PlainLook::missed of a sample
+  double missed = 0;     ///< the greatest PlainLook::missed of a sample, halved from look to look
   uint64_t rays = 0;     ///< that it took
   PassHalves seen;
 };
