@@ -159,6 +159,22 @@ TEST_F(Animate, FramesDoNotDependOnHowTheWorkIsSplit) {
   EXPECT_EQ(figures("whole")["frames"][3]["parameters"]["door"], "1.4");
 }
 
+// Nothing moves, but rays ask the frame's own scene for opacities.
+TEST_F(Animate, MasksOpenAndClose) {
+  write("room.xml", R"(<scene version="3.0.0">
+    <default name="door" value="1"/>
+    <sensor type="perspective">
+      <transform name="to_world"><lookat origin="0, 0, 3.5" target="0, 0, 0" up="0, 1, 0"/></transform>
+      <film type="hdrfilm"><integer name="width" value="8"/><integer name="height" value="8"/></film></sensor>
+    <shape type="rectangle"><bsdf type="mask"><float name="opacity" value="$door"/><bsdf type="diffuse"/></bsdf></shape>
+    <emitter type="constant"/>
+  </scene>)");
+  run("2", "whole", {"--integrator", "path"});
+  run("1/2", "alone", {"--integrator", "path"});
+  EXPECT_EQ(pixels("whole/f_01.exr"), pixels("alone/f_01.exr"));
+  EXPECT_NE(pixels("whole/f_00.exr"), pixels("whole/f_01.exr"));
+}
+
 TEST_F(Animate, FinishedFramesAreNotRenderedAgain) {
   run("3", "out");
   const std::vector<float> last = pixels("out/f_02.exr");
