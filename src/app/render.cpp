@@ -79,10 +79,11 @@ void warn(const Run& run, const RenderState& state) {
 void note_plain(const RenderArguments& a, const Run& run, const RenderState& state) {
   const Plain& p = state.plain;
   if (a.quiet || !p.taken || !may_leave_out(run.options) || state.film.passes <= p.passes) return;
-  fmt::print(stderr,
-             "ajar: note: after {} passes path tracing took over from {}: it needs {:.2g} times the time to equal "
-             "error here; --plan all goes on guiding\n",
-             p.passes, run.options.integrator, p.ratio);
+  fmt::print(
+      stderr,
+      "ajar: note: path tracing took over from {} after {} passes, since light is easy to find here (error after "
+      "equal time: {:.2g} times); --plan all goes on guiding\n",
+      run.options.integrator, p.passes, p.ratio);
 }
 
 // A state to go on from: new, or what a checkpoint or a file of fields brings.

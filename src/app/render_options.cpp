@@ -196,6 +196,8 @@ bool plans(const RenderArguments& a, const Scene& scene) {
   if (a.plan.empty()) return a.integrator.empty() && scene.hints.integrator.empty() && a.resume.empty();
   if (!a.integrator.empty() && a.plan != "all")
     throw Error("--plan: chooses the integrator; leave out either this or --integrator, or write --plan all");
+  if (!a.integrator.empty() && !is_guided(a.integrator))
+    throw Error(fmt::format("--plan all: {} leaves nothing out; leave it out", a.integrator));
   if (a.plan != "auto") return false;
   if (!a.resume.empty())
     throw Error("--plan auto: a checkpoint goes on as it began; name its integrator, which its record has");

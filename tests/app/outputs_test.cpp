@@ -89,6 +89,7 @@ TEST_F(Outputs, WrongOnesAreErrorsBeforeTheRender) {
       {{"--integrator", "path", "--techniques", "t"}, "--techniques: path has no strategies"},
       {{"--integrator", "light", "--techniques", "t"}, "--techniques: light has no strategies"},
       {{"--plan", "auto", "--integrator", "bdpt"}, "leave out either"},
+      {{"--plan", "all", "--integrator", "bdpt"}, "--plan all: bdpt leaves nothing out"},
   };
   const std::string scene = kit::bytes_of("box.xml");
   for (const Case& c : cases) {
