@@ -140,7 +140,9 @@ TEST_F(Render, VersusMayHaveTooLittleTime) {
   const auto tells = [&] {
     return !run({"--spp", "1", "--versus", "bdpt", "--threads", "1"})["versus"]["error_ratio"].is_null();
   };
-  EXPECT_FALSE(tells() && tells() && tells());
+  int told = 0;
+  while (told < 12 && tells()) ++told;
+  EXPECT_LT(told, 12);
 }
 
 TEST_F(Render, WhatCannotBeHeldAgainstIsAnError) {
