@@ -70,6 +70,8 @@ struct Open {
 std::optional<double> to_number(std::string_view text);
 /// Numbers divided by commas or blanks; nothing if one is malformed.
 std::optional<std::vector<double>> to_numbers(std::string_view text);
+/// What a message about malformed numbers adds where one ends in the f of C and of shaders; else nothing.
+std::string about_suffix(std::string_view text);
 /// The attribute as a number, within the range of float.
 double number_attribute(const Loader& loader, const Node& node, const char* name, double otherwise);
 /// x, y, z attributes or value="x, y, z" (or one number for all three).

@@ -38,7 +38,7 @@ const std::string& value_of(const Loader& loader, const Node& node) {
 
 double checked(const Loader& loader, const Node& node, std::string_view value) {
   const std::optional<double> x = to_number(value);
-  if (!x) fail(loader, node, fmt::format("\"{}\" is not a number", value.substr(0, 80)));
+  if (!x) fail(loader, node, fmt::format("\"{}\" is not a number{}", value.substr(0, 80), about_suffix(value)));
   if (std::abs(*x) > std::numeric_limits<float>::max())
     fail(loader, node, fmt::format("{} is beyond the range of numbers; rescale the scene", value.substr(0, 80)));
   return *x;
@@ -49,6 +49,15 @@ double number_of(const Loader& loader, const Node& node) {
       node.tag != "rgb")
     fail(loader, node, "one number is expected here: <float name=\"...\" value=\"...\"/>");
   return checked(loader, node, value_of(loader, node));
+}
+
+// Takes the next word of a list from its text; empty at the end.
+std::string_view take_word(std::string_view& text) {
+  constexpr std::string_view between = ", \t\r\n";
+  text.remove_prefix(std::min(text.find_first_not_of(between), text.size()));
+  const std::string_view word = text.substr(0, text.find_first_of(between));
+  text.remove_prefix(word.size());
+  return word;
 }
 
 }  // namespace
@@ -70,16 +79,22 @@ std::optional<double> to_number(std::string_view text) {
 
 std::optional<std::vector<double>> to_numbers(std::string_view text) {
   std::vector<double> list;
-  constexpr std::string_view between = ", \t\r\n";
-  for (size_t begin; (begin = text.find_first_not_of(between)) != text.npos;) {
-    text.remove_prefix(begin);
-    const size_t length = std::min(text.find_first_of(between), text.size());
-    const std::optional<double> x = to_number(text.substr(0, length));
+  for (std::string_view word; !(word = take_word(text)).empty();) {
+    const std::optional<double> x = to_number(word);
     if (!x) return {};
     list.push_back(*x);
-    text.remove_prefix(length);
   }
   return list;
+}
+
+std::string about_suffix(std::string_view text) {
+  for (std::string_view word; !(word = take_word(text)).empty();) {
+    word.remove_prefix(word.rfind(':') + 1);  // of wavelength:value
+    const bool suffixed = word.ends_with('f') || word.ends_with('F');
+    if (suffixed && to_number(word.substr(0, word.size() - 1)))
+      return fmt::format(": leave out the {}, which Mitsuba does not take either", word.back());
+  }
+  return {};
 }
 
 double number_attribute(const Loader& loader, const Node& node, const char* name, double otherwise) {
@@ -94,7 +109,7 @@ DVec3 vector_of(const Loader& loader, const Node& node, double otherwise) {
             number_attribute(loader, node, "z", otherwise)};
   const auto list = to_numbers(*value);
   if (!list || (list->size() != 3 && list->size() != 1))
-    fail(loader, node, fmt::format("\"{}\" should be three numbers", value->substr(0, 80)));
+    fail(loader, node, fmt::format("\"{}\" should be three numbers{}", value->substr(0, 80), about_suffix(*value)));
   for (const double x : *list)
     if (std::abs(x) > std::numeric_limits<float>::max()) fail(loader, node, "is beyond the range of numbers");
   return list->size() == 1 ? DVec3((*list)[0]) : DVec3((*list)[0], (*list)[1], (*list)[2]);

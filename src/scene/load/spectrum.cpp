@@ -44,7 +44,8 @@ Rgb rgb_of(const Loader& loader, const Node& node, bool encoded) {
   } else {
     const auto list = to_numbers(value);
     if (!list || (list->size() != 3 && list->size() != 1))
-      fail(loader, node, fmt::format("\"{}\" should be one number, three or #rrggbb", value.substr(0, 80)));
+      fail(loader, node,
+           fmt::format("\"{}\" should be one number, three or #rrggbb{}", value.substr(0, 80), about_suffix(value)));
     c = list->size() == 1 ? DVec3((*list)[0]) : DVec3((*list)[0], (*list)[1], (*list)[2]);
   }
   return encoded ? Rgb(from_srgb(c.x), from_srgb(c.y), from_srgb(c.z)) : Rgb(c);
@@ -63,7 +64,8 @@ List pairs_of(const Loader& loader, const Node& node, std::string value) {
     std::string second = colon == word.npos ? "" : word.substr(colon + 1);
     if (colon != word.npos && second.empty()) words >> second;  // "400: 0.1"
     const auto nm = to_number(word.substr(0, colon)), x = to_number(second);
-    if (!nm || !x) fail(loader, node, fmt::format("\"{}\" should be wavelength:value", word.substr(0, 80)));
+    if (!nm || !x)
+      fail(loader, node, fmt::format("\"{}\" should be wavelength:value{}", word.substr(0, 80), about_suffix(value)));
     list.emplace_back(*nm, *x);
   }
   return list;
@@ -174,8 +176,9 @@ Rgb colour_of(Loader& loader, const Node& node, Colour kind) {
   if (node.tag == "rgb" || node.tag == "srgb")
     return checked(loader, node, rgb_of(loader, node, node.tag == "srgb"), kind);
   if (node.tag == "float" || node.tag == "integer" || node.tag == "string") {
-    const auto x = to_number(value_of(loader, node));
-    if (!x) fail(loader, node, fmt::format("\"{}\" is not a number", value_of(loader, node).substr(0, 80)));
+    const std::string& value = value_of(loader, node);
+    const auto x = to_number(value);
+    if (!x) fail(loader, node, fmt::format("\"{}\" is not a number{}", value.substr(0, 80), about_suffix(value)));
     return checked(loader, node, Rgb(float(*x)), kind);
   }
   fail(loader, node, "a number, <rgb>, <spectrum> or <texture> is expected here");

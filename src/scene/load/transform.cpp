@@ -13,7 +13,8 @@ DMat4 matrix_of(const Loader& loader, const Node& node) {
   const std::string* value = attribute(node, "value");
   const auto list = value == nullptr ? std::nullopt : to_numbers(*value);
   if (!list || (list->size() != 16 && list->size() != 9))
-    fail(loader, node, "needs value=\"...\" of 16 (or 9) numbers, row by row");
+    fail(loader, node,
+         fmt::format("needs value=\"...\" of 16 (or 9) numbers, row by row{}", about_suffix(value ? *value : "")));
   const int n = list->size() == 16 ? 4 : 3;
   DMat4 m(1);
   for (int row = 0; row < n; ++row)
@@ -26,7 +27,8 @@ DVec3 point_attribute(const Loader& loader, const Node& node, const char* name) 
   if (value == nullptr) fail(loader, node, fmt::format("needs {}=\"x, y, z\"", name));
   const auto list = to_numbers(*value);
   if (!list || list->size() != 3)
-    fail(loader, node, fmt::format("{}=\"{}\" should be three numbers", name, value->substr(0, 80)));
+    fail(loader, node,
+         fmt::format("{}=\"{}\" should be three numbers{}", name, value->substr(0, 80), about_suffix(*value)));
   return {(*list)[0], (*list)[1], (*list)[2]};
 }
 

@@ -29,6 +29,25 @@ TEST(Numbers, AreReadWhollyOrNotAtAll) {
   EXPECT_FALSE(to_numbers("1, x"));
 }
 
+// As C and shaders write them, and as some files do that Mitsuba does not read either.
+TEST(Numbers, SuffixesAreToldFrom) {
+  const std::string cure = ": leave out the f, which Mitsuba does not take either";
+  const auto bsdf = [](const std::string& inside) { return "<bsdf type='diffuse'>" + inside + "</bsdf>"; };
+  for (const std::string& inside :
+       {bsdf("<float name='reflectance' value='0.5f'/>"), bsdf("<rgb name='reflectance' value='1, 0.5f, 0'/>"),
+        bsdf("<spectrum name='reflectance' value='400:1.f, 500:1'/>"),
+        std::string("<shape type='sphere'><float name='radius' value='1.0f'/></shape>"),
+        std::string("<shape type='sphere'><point name='center' value='0, 0, 1f'/></shape>"),
+        std::string("<shape type='cube'><transform name='toWorld'><translate x='2f'/></transform></shape>"),
+        std::string("<shape type='cube'><transform name='toWorld'><lookat origin='0 0 1f' target='0 0 0'/></transform>"
+                    "</shape>"),
+        std::string("<shape type='cube'><transform name='toWorld'><matrix value='1f 0 0 0 1 0 0 0 1'/></transform>"
+                    "</shape>")})
+    EXPECT_SAYS(error_of(inside), cure);
+  EXPECT_EQ(error_of("<shape type='sphere'><float name='radius' value='half'/></shape>").find("leave out"),
+            std::string::npos);
+}
+
 TEST(Colour, RgbForms) {
   EXPECT_RGB(reflectance("<rgb name='reflectance' value='0.1, 0.2 0.3'/>"), 0.1, 0.2, 0.3, 1e-6);
   EXPECT_RGB(reflectance("<rgb name='reflectance' value='0.25'/>"), 0.25, 0.25, 0.25, 1e-6);
