@@ -42,7 +42,7 @@ void count_meshes(Loader& loader, const Node& node) {
 }
 
 bool is_definition(const Node& node) {
-  static constexpr const char* tags[] = {"spectrum", "rgb", "srgb", "blackbody", "sampler", "film", "rfilter", "ref"};
+  static constexpr const char* tags[] = {"spectrum", "rgb", "srgb", "blackbody", "sampler", "film", "rfilter"};
   return std::find(std::begin(tags), std::end(tags), node.tag) != std::end(tags);
 }
 
@@ -105,6 +105,8 @@ void load_child(Loader& loader, const Node& node, bool& has_integrator) {
                         : "participating media are not supported; a shape that names it is an error");
   } else if (node.tag == "texture") {
     check_texture(loader, node);  // read where it is named: only then is it known what its numbers stand for
+  } else if (node.tag == "ref") {
+    follow(loader, node);  // what it names is in the scene already
   } else if (is_definition(node)) {
     // read where it is named
   } else if (node.name.empty() || !node.children.empty()) {

@@ -94,8 +94,9 @@ bool has(Params& params, const char* name);
 double number(Params& params, const char* name, double otherwise);
 double positive(Params& params, const char* name, double otherwise);
 int integer(Params& params, const char* name, int otherwise, int low, int high);
-/// A whole number that asks for something Ajar need not do: numbers beyond measure become large ones.
-int hint(Params& params, const char* name, int otherwise);
+/// A whole number of 1 or more (or -1 for no limit) that asks for something Ajar need not do: numbers beyond measure
+/// become large ones.
+int hint(Params& params, const char* name, int otherwise, bool or_unlimited = false);
 bool boolean(Params& params, const char* name, bool otherwise);
 std::string text(Params& params, const char* name, const std::string& otherwise);
 /// One of a few words, in any case; an Error lists them, or with --lenient a note.

@@ -158,9 +158,16 @@ int integer(Params& params, const char* name, int otherwise, int low, int high) 
   return int(x);
 }
 
-int hint(Params& params, const char* name, int otherwise) {
-  const double limit = 1 << 30, x = number(params, name, otherwise);
-  return int(std::clamp(x, -1.0, limit));
+int hint(Params& params, const char* name, int otherwise, bool or_unlimited) {
+  constexpr double limit = 1 << 30;
+  const Node* node = find(params, {name});
+  if (node == nullptr) return otherwise;
+  const double x = number_of(params.loader, *node);
+  if (!(x >= 1 || (x == -1 && or_unlimited)) || x != std::floor(x))
+    fail(params.loader, *node,
+         fmt::format("{} should be a whole number, 1 or more{}", value_of(params.loader, *node),
+                     or_unlimited ? ", or -1 for no limit" : ""));
+  return int(std::min(x, limit));
 }
 
 bool boolean(Params& params, const char* name, bool otherwise) {

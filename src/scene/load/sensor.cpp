@@ -220,7 +220,7 @@ void load_integrator(Loader& loader, const Node& node) {
                                     {"direct", "path"}};
   Hints& hints = loader.scene.hints;
   Params p(loader, node);
-  const int depth = hint(p, "max_depth", -1);
+  const int depth = hint(p, "max_depth", -1, true);
   if (has(p, "max_depth")) hints.max_depth = depth;
   if (node.type == "direct") hints.max_depth = 2;  // the light that reaches what the camera sees, and no further
   if (boolean(p, "hide_emitters", false)) note(loader, node, "hide_emitters is not supported: lights stay visible");

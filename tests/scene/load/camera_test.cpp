@@ -254,11 +254,29 @@ TEST(Integrators, AreHints) {
       "<integer name='max_depth' value='5'/></integrator></integrator></integrator>");
   EXPECT_EQ(h.integrator, "bdpt");
   EXPECT_EQ(h.max_depth, 5);
+  EXPECT_EQ(hints("<integrator type='path'><integer name='max_depth' value='99999999999'/></integrator>").max_depth,
+            1 << 30);
   const Scene s = load_inside("<integrator type='manifold_path'><integer name='max_depth' value='-1'/></integrator>");
   EXPECT_TRUE(says(s.notes, "Ajar has no integrator of this name"));
   EXPECT_TRUE(
       says(load_inside("<integrator type='path'><boolean name='hideEmitters' value='true'/></integrator>").notes,
            "hide_emitters"));
+}
+
+TEST(Integrators, NumbersThatAskForNothingAreErrors) {
+  const auto depth = [](const std::string& value) {
+    return error_of("<integrator type='path'><integer name='maxDepth' value='" + value + "'/></integrator>");
+  };
+  for (const char* value : {"0", "-7", "2.5"})
+    EXPECT_EQ(depth(value), std::string("test.xml:2: <integer name=\"maxDepth\">: ") + value +
+                                " should be a whole number, 1 or more, or -1 for no limit");
+  EXPECT_EQ(depth("-1"), "");
+  for (const char* value : {"0", "-1", "-5"}) {
+    const std::string count = std::string("<integer name='sampleCount' value='") + value + "'/>";
+    EXPECT_EQ(
+        error("<sampler type='independent'>" + count + "</sampler>"),
+        std::string("test.xml:1: <integer name=\"sampleCount\">: ") + value + " should be a whole number, 1 or more");
+  }
 }
 
 }  // namespace

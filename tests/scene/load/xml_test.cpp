@@ -121,6 +121,8 @@ TEST(References, BsdfNamedTwiceIsReadOnce) {
 
 TEST(References, WrongOnesAreErrors) {
   EXPECT_SAYS(error_of("\n\n" + ball), "test.xml:4: <ref id=\"m\">: nothing in the scene has the id \"m\"");
+  EXPECT_SAYS(error_of("<ref id='n'/>"), "test.xml:2: <ref id=\"n\">: nothing in the scene has the id \"n\"");
+  EXPECT_EQ(error_of("<ref id='n'/><alias id='m' as='n'/><bsdf type='diffuse' id='m'/>"), "");
   EXPECT_SAYS(error_of("<shape type='sphere'><ref/></shape>"), "needs id");
   EXPECT_SAYS(error_of("<bsdf type='diffuse' id='m'/>\n<bsdf type='diffuse' id='m'/>"), "taken already at test.xml:2");
   EXPECT_SAYS(error_of("<alias id='a' as='b'/><alias id='b' as='a'/><shape type='sphere'><ref id='a'/></shape>"),
