@@ -83,11 +83,14 @@ Rgb eval_bitmap(const Scene& scene, const Texture& t, const Vec2& uv) {
   return (q.c00 * (1 - q.at.x) + q.c10 * q.at.x) * (1 - q.at.y) + (q.c01 * (1 - q.at.x) + q.c11 * q.at.x) * q.at.y;
 }
 
-// Colour 0 where both coordinates lie in the same half of their period.
-const Slot& checker(const Texture& t, const Vec2& uv) {
+// The colour of a checkerboard or grid that is seen. Colour 0 where both coordinates lie in the same half of their
+// period; where neither is near a whole number.
+const Slot& seen(const Texture& t, const Vec2& uv) {
   const Vec3 at = t.to_uv * Vec3(uv, 1);
-  const bool left = at.x - std::floor(at.x) < 0.5f, low = at.y - std::floor(at.y) < 0.5f;
-  return left == low ? t.color0 : t.color1;
+  const float x = at.x - std::floor(at.x), y = at.y - std::floor(at.y);
+  if (t.kind == TextureKind::checkerboard) return (x < 0.5f) == (y < 0.5f) ? t.color0 : t.color1;
+  const bool line = std::min(std::min(x, 1 - x), std::min(y, 1 - y)) < t.line_width;
+  return line ? t.color1 : t.color0;
 }
 
 // The values of an attribute, none if the mesh lacks it.
@@ -161,7 +164,8 @@ Rgb eval(const Scene& scene, const Slot& slot, const Surface& at) {
     case TextureKind::bitmap:
       return eval_bitmap(scene, t, at.uv);
     case TextureKind::checkerboard:
-      return eval(scene, checker(t, at.uv), at);
+    case TextureKind::grid:
+      return eval(scene, seen(t, at.uv), at);
     case TextureKind::scale:
       return eval(scene, t.color0, at) * eval(scene, t.color1, at);
     case TextureKind::mesh_attribute:
@@ -179,7 +183,8 @@ Vec2 eval_gradient(const Scene& scene, const Slot& slot, const Surface& at) {
     case TextureKind::bitmap:
       return bitmap_gradient(scene, t, at.uv);
     case TextureKind::checkerboard:
-      return eval_gradient(scene, checker(t, at.uv), at);
+    case TextureKind::grid:
+      return eval_gradient(scene, seen(t, at.uv), at);
     case TextureKind::scale:
       return eval_gradient(scene, t.color0, at) * eval_scalar(scene, t.color1, at) +
              eval_gradient(scene, t.color1, at) * eval_scalar(scene, t.color0, at);
@@ -197,6 +202,10 @@ Rgb mean(const Scene& scene, const Slot& slot) {
       return mean_texel(scene.images[t.image], t.channel);
     case TextureKind::checkerboard:
       return (mean(scene, t.color0) + mean(scene, t.color1)) * 0.5f;
+    case TextureKind::grid: {
+      const float between = sqr(std::max(1 - 2 * t.line_width, 0.0f));
+      return mean(scene, t.color0) * between + mean(scene, t.color1) * (1 - between);
+    }
     case TextureKind::scale:
       return mean(scene, t.color0) * mean(scene, t.color1);
     case TextureKind::mesh_attribute:

@@ -49,7 +49,7 @@ inline Rgb texel(const Image& image, int x, int y, Channel channel = Channel::co
 }
 
 enum class Wrap : uint8_t { repeat, mirror, clamp, zero, one };
-enum class TextureKind : uint8_t { bitmap, checkerboard, scale, mesh_attribute };
+enum class TextureKind : uint8_t { bitmap, checkerboard, grid, scale, mesh_attribute };
 
 struct Texture {
   TextureKind kind = TextureKind::bitmap;
@@ -59,8 +59,9 @@ struct Texture {
   bool flip_v = true;     ///< bitmap: v = 0 is the lowest row of the image
   uint32_t image = none;  ///< bitmap: index into Scene::images
   Mat3 to_uv{1};          ///< applied to (u, v, 1) before the look-up
-  Slot color0{0.4f};      ///< checkerboard, where floor(2u) + floor(2v) is even; scale: the nested slot
-  Slot color1{0.2f};      ///< checkerboard, elsewhere; scale: the factor
+  Slot color0{0.4f};  ///< checkerboard, where floor(2u) + floor(2v) is even; grid, its ground; scale: the nested slot
+  Slot color1{0.2f};  ///< checkerboard, elsewhere; grid, its lines; scale: the factor
+  float line_width = 0;   ///< grid: how far a line reaches to either side of a whole number
   std::string attribute;  ///< mesh_attribute: its name; black where the mesh has none of this name
 };
 

@@ -211,7 +211,7 @@ void list_attributes(const Scene& scene, const Slot& slot, std::set<std::string>
   if (slot.texture == none) return;
   const Texture& t = scene.textures[slot.texture];
   if (t.kind == TextureKind::mesh_attribute) out.insert(t.attribute);
-  if (t.kind == TextureKind::checkerboard || t.kind == TextureKind::scale)
+  if (t.kind == TextureKind::checkerboard || t.kind == TextureKind::grid || t.kind == TextureKind::scale)
     for (const Slot* inner : {&t.color0, &t.color1}) list_attributes(scene, *inner, out);
 }
 void list_attributes(const Scene& scene, uint32_t material, std::set<std::string>& out) {

@@ -9,7 +9,7 @@
 namespace ajar {
 namespace {
 
-constexpr const char* types[] = {"bitmap", "checkerboard", "scale", "mesh_attribute", "vertexcolors"};
+constexpr const char* types[] = {"bitmap", "checkerboard", "gridtexture", "scale", "mesh_attribute", "vertexcolors"};
 
 // Affine map of (u, v): scale and offset (0.x), then the transform (2.x, 3.x).
 Mat3 uv_map(Params& p) {
@@ -45,6 +45,18 @@ Texture checkerboard(Params& p, Colour kind) {
   t.color1 = slot(p, {"color1"}, 0.2f, kind);
   t.to_uv = uv_map(p);
   finish(p);
+  return t;
+}
+
+Texture grid(Params& p, Colour kind) {
+  Texture t;
+  t.kind = TextureKind::grid;
+  t.color0 = slot(p, {"color0"}, 0.2f, kind);
+  t.color1 = slot(p, {"color1"}, 0.4f, kind);
+  t.line_width = float(number(p, "line_width", 0.01));
+  if (!(t.line_width >= 0)) fail(p.loader, p.node, "line_width should not be negative");
+  t.to_uv = uv_map(p);
+  finish(p, {"filter_type"});
   return t;
 }
 
@@ -167,6 +179,8 @@ uint32_t load_texture(Loader& loader, const Node& node, Colour kind) {
     t = bitmap(p);
   } else if (node.type == "checkerboard") {
     t = checkerboard(p, kind);
+  } else if (node.type == "gridtexture") {
+    t = grid(p, kind);
   } else if (node.type == "scale") {
     t = scaled(p, kind);
   } else if (node.type == "mesh_attribute" || node.type == "vertexcolors") {

@@ -102,6 +102,29 @@ TEST(TextureKinds, Checkerboard) {
   EXPECT_RGB(at(with("<texture name='reflectance' type='checkerboard'/>"), 0.6f, 0.1f), 0.2, 0.2, 0.2, 1e-6);
 }
 
+TEST(TextureKinds, Grid) {
+  const auto grid = [](const std::string& inside) {
+    return with("<texture name='reflectance' type='gridtexture'>" + inside + "</texture>");
+  };
+  Scene s = grid("");
+  for (const float edge : {0.0f, 0.009f, 0.991f, 3.995f}) {
+    EXPECT_RGB(at(s, edge, 0.5f), 0.4, 0.4, 0.4, 1e-6);
+    EXPECT_RGB(at(s, 0.5f, edge), 0.4, 0.4, 0.4, 1e-6);
+  }
+  for (const float inside : {0.011f, 0.5f, 0.989f}) EXPECT_RGB(at(s, inside, inside), 0.2, 0.2, 0.2, 1e-6);
+  EXPECT_RGB(mean(s, s.materials[0].reflectance), 0.20792, 0.20792, 0.20792, 1e-6);  // 0.98 * 0.98 of it ground
+  s = grid(
+      "<rgb name='color0' value='.1 .2 .3'/><rgb name='color1' value='.9'/><float name='lineWidth' value='.25'/>"
+      "<float name='uvscale' value='2'/><float name='uoffset' value='.5'/><string name='filterType' value='ewa'/>");
+  EXPECT_EQ(s.notes.size(), 2u);                        // no shape, no light
+  EXPECT_RGB(at(s, 0, 0.25f), 0.1, 0.2, 0.3, 1e-6);     // u 0.5, v 0.5
+  EXPECT_RGB(at(s, 0.2f, 0.25f), 0.9, 0.9, 0.9, 1e-6);  // u 0.9
+  EXPECT_RGB(at(s, 0, 0.1f), 0.9, 0.9, 0.9, 1e-6);      // v 0.2
+  EXPECT_SAYS(error_of("<bsdf type='diffuse'><texture name='reflectance' type='gridtexture'><float name='lineWidth' "
+                       "value='-1'/></texture></bsdf>"),
+              "line_width should not be negative");
+}
+
 TEST(TextureKinds, LightsMayBeBrighterThanSurfaces) {
   const std::string checker = "<texture id='t' type='checkerboard'><rgb name='color0' value='30'/></texture>";
   const Scene s = load_inside(checker +
@@ -166,7 +189,7 @@ TEST(TextureKinds, AttributesOfFacesAndVertices) {
 }
 
 TEST(TextureKinds, Unknown) {
-  const std::string text = "<bsdf type='diffuse'><texture name='reflectance' type='gridtexture'/></bsdf>";
+  const std::string text = "<bsdf type='diffuse'><texture name='reflectance' type='curvature'/></bsdf>";
   EXPECT_SAYS(error_of(text), "unknown texture; supported: bitmap, checkerboard");
   EXPECT_RGB(at(load_inside(text, lenient()), 0.1f, 0.6f), 0.5, 0.5, 0.5, 1e-6);
 }
