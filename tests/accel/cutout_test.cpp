@@ -114,6 +114,50 @@ TEST(CutOut, MasksOfMasksMultiply) {
   EXPECT_FLOAT_EQ(opacity(scene, 0, 0, {0.2f, 0.2f}), 0.6f);
 }
 
+// A normal map does not know where light passes: it may be around the mask or inside.
+TEST(CutOut, MasksInsideOfMapsAreMasks) {
+  Scene scene;
+  const uint32_t inner = add_diffuse(scene, Rgb(0.5f)), mask = masked(scene, 0.3f, inner);
+  const auto around = [&](MaterialKind kind, uint32_t nested) {
+    Material m;
+    m.kind = kind, m.nested[0] = nested;
+    m.map = Slot(Rgb(0.5f, 0.5f, 1));
+    return add_material(scene, m);
+  };
+  for (const MaterialKind kind : {MaterialKind::bumpmap, MaterialKind::normalmap, MaterialKind::twosided})
+    add_quad(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, around(kind, masked(scene, 0.5f, around(kind, mask))));
+  add_quad(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, around(MaterialKind::bumpmap, nothing(scene)));
+  for (int times = 1; times <= 2; ++times) {
+    finish(scene);
+    for (uint32_t i = 0; i < 3; ++i) {
+      ASSERT_NE(scene.shapes[i].mask, none);
+      const Material& outer = scene.materials[scene.shapes[i].material];
+      EXPECT_EQ(outer.kind, scene.materials[scene.shapes[i].mask].kind);
+      EXPECT_EQ(scene.materials[outer.nested[0]].kind, outer.kind);
+      EXPECT_EQ(scene.materials[outer.nested[0]].nested[0], inner);
+      EXPECT_FLOAT_EQ(opacity(scene, i, 0, {0.2f, 0.2f}), 0.15f) << i;
+    }
+    EXPECT_TRUE(is_open(scene, scene.shapes[3]));
+    EXPECT_FALSE(is_open(scene, scene.shapes[0]));
+  }
+  scene.materials[scene.shapes[0].mask].map_scale = 7;
+  finish(scene);
+  EXPECT_EQ(scene.materials[scene.shapes[0].material].map_scale, 7);
+}
+
+// Each side of a twosided material has holes of its own: they stay with it.
+TEST(CutOut, MasksOfOneSideAreNotCutOut) {
+  Scene scene;
+  Material m;
+  m.kind = MaterialKind::twosided;
+  m.nested[0] = masked(scene, 0.3f, add_diffuse(scene, Rgb(0.5f))), m.nested[1] = add_diffuse(scene, Rgb(0.5f));
+  const uint32_t sides = add_material(scene, m);
+  add_quad(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, sides);
+  finish(scene);
+  EXPECT_EQ(scene.shapes[0].mask, none);
+  EXPECT_EQ(scene.shapes[0].material, sides);
+}
+
 TEST(CutOut, NothingIsNotThere) {
   Scene scene;
   const uint32_t null = nothing(scene);

@@ -231,5 +231,27 @@ TEST(Sampler, SequenceBeatsIndependentNumbers) {
   }
 }
 
+// A normal map bends normals alone, so a mask inside of it is the mask around it.
+TEST(Determinism, MasksInsideOfNormalMapsAreTheSame) {
+  const auto leaves = [](bool mask_outside) {
+    Scene scene = stage();
+    Material mask, map;
+    mask.kind = MaterialKind::mask, mask.weight = add_checkerboard(scene, Rgb(0.9f), Rgb(0.1f));
+    map.kind = MaterialKind::normalmap, map.map = Slot(Rgb(0.6f, 0.4f, 0.9f));
+    Material &outer = mask_outside ? mask : map, &inner = mask_outside ? map : mask;
+    inner.nested[0] = add_diffuse(scene, {0.3f, 0.6f, 0.2f});
+    outer.nested[0] = add_material(scene, inner);
+    add_quad(scene, {-0.8f, 0.2f, -0.8f}, {1.6f, 0, 0}, {0, 0, 1.6f}, add_material(scene, outer));
+    finish(scene);
+    return scene;
+  };
+  const Scene outside = leaves(true), inside = leaves(false);
+  for (const char* integrator : {"path", "bdpt"}) {
+    const RenderOptions o = options_of(integrator, 4);
+    const std::vector<float> a = develop(rendered(outside, Accel(outside), o).film).pixels;
+    EXPECT_TRUE(same_bytes(a, develop(rendered(inside, Accel(inside), o).film).pixels)) << integrator;
+  }
+}
+
 }  // namespace
 }  // namespace ajar

@@ -66,7 +66,8 @@ struct alignas(64) Material {
   Slot roughness{0.5f}, anisotropic{0.0f}, metallic{0.0f}, spec_trans{0.0f}, spec_tint{0.0f}, sheen{0.0f},
       sheen_tint{0.0f}, clearcoat{0.0f}, clearcoat_gloss{0.0f}, flatness{0.0f};
 
-  bool splits = false;  ///< blend, mixture: branches with normals of their own; made by prepare_materials()
+  uint32_t bare = none;  ///< itself without the masks in it, where it is more than what they cover; made by cut_out()
+  bool splits = false;   ///< blend, mixture: branches with normals of their own; made by prepare_materials()
   // made by prepare_materials() for plastics: how much enters through the boundary from outside
   float entering = 0;                 ///< cosine-weighted mean
   std::vector<float> entering_table;  ///< rough boundary: rows over the cosine, one or (textured alpha) several

@@ -230,7 +230,9 @@ void twosided(Params& p, Material& m) {
   take_nested(p, m, 1, 2);
   for (const uint32_t side : m.nested)
     if (side != none && transmits(p.loader.scene, side))
-      fail(p.loader, p.node, "what is nested lets light through; only opaque bsdfs have two sides: take twosided away");
+      fail(p.loader, p.node,
+           "what is nested lets light through; only opaque bsdfs have two sides: take twosided away, or put a mask "
+           "around it");
 }
 
 void mask(Params& p, Material& m) {
