@@ -24,11 +24,48 @@ const std::vector<std::string> plans = {"auto", "all"};  // whether a guided int
 const std::vector<std::string> light_choices = {"tree", "learned"};
 const std::vector<std::string> guided = {"both", "camera", "light"};  // in the order of the enumerators
 
-/// An option of a method: how a suite sets it, how a report shows it. A new option is a line in the table.
+// Why an option would do nothing, as the command line has it; empty if it does something.
+std::string if_guided(const RenderOptions& o) {
+  if (is_guided(o.integrator)) return {};
+  return fmt::format("the integrator {} learns no fields; leave it out, or take guided-bdpt or guided-path",
+                     o.integrator);
+}
+std::string if_it_leaves_out(const RenderOptions& o) {
+  return is_guided(o.integrator) ? "" : fmt::format("{} leaves nothing out; leave it out", o.integrator);
+}
+std::string if_it_guides(const RenderOptions& o) {
+  if (o.integrator == "guided-path" && o.learn.guided == Guided::light)
+    return "guided-path has no light subpaths; leave it out, or take guided-bdpt";
+  if (o.integrator == "vpl" && o.learn.guided != Guided::both) return "vpl guides light subpaths alone; leave it out";
+  return if_guided(o);
+}
+std::string if_it_learns(const RenderOptions& o) { return o.learn_lights ? "" : if_guided(o); }
+std::string if_it_trains(const RenderOptions& o) {
+  return o.learn.train % 2 ? fmt::format("is {}; passes come in pairs: write an even number", o.learn.train)
+                           : if_guided(o);
+}
+std::string if_it_chooses_lights(const RenderOptions& o) {
+  if (!o.learn_lights || is_guided(o.integrator) || o.integrator == "path" || o.integrator == "bdpt") return {};
+  return fmt::format("{} learns no choice of lights; leave it out", o.integrator);
+}
+std::string if_it_merges(const RenderOptions& o) {
+  if (!is_merging(o.integrator))
+    return fmt::format("{} merges nothing; leave it out, or take vcm, guided-vcm or photon", o.integrator);
+  return o.integrator == "photon" && !(o.merge_radius > 0) ? "is 0; photon needs a radius above 0" : "";
+}
+std::string if_it_gathers(const RenderOptions& o) {
+  if (o.integrator == "photon") return {};
+  return fmt::format("{} has no photon map to gather from; leave it out, or take photon", o.integrator);
+}
+std::string always(const RenderOptions&) { return {}; }
+
+/// An option of a method: how a suite sets it, how a report shows it, what speaks against it. A new option is a line
+/// in the table.
 struct Option {
   const char* key;
   void (*set)(RenderOptions&, const Element&);
   Json (*show)(const RenderOptions&);
+  std::string (*refuse)(const RenderOptions&) = always;
 };
 const Option options_table[] = {
     {"integrator",
@@ -47,30 +84,32 @@ const Option options_table[] = {
     {"roulette_depth", [](RenderOptions& o, const Element& e) { o.roulette_depth = int(integer(e, 1, deepest)); },
      [](const RenderOptions& o) { return Json(o.roulette_depth); }},
     {"plan", [](RenderOptions& o, const Element& e) { o.leaves_out = choice(e, plans) == 0; },
-     [](const RenderOptions& o) { return Json(plans[o.leaves_out || !is_guided(o.integrator) ? 0 : 1]); }},
+     [](const RenderOptions& o) { return Json(plans[o.leaves_out || !is_guided(o.integrator) ? 0 : 1]); },
+     if_it_leaves_out},
     {"guide", [](RenderOptions& o, const Element& e) { o.learn.guided = Guided(choice(e, guided)); },
-     [](const RenderOptions& o) { return Json(guided[size_t(o.learn.guided)]); }},
+     [](const RenderOptions& o) { return Json(guided[size_t(o.learn.guided)]); }, if_it_guides},
     {"field_memory",
      [](RenderOptions& o, const Element& e) { o.learn.memory = size_t(integer(e, 64 << 10, int64_t(64) << 30)); },
-     [](const RenderOptions& o) { return Json(o.learn.memory); }},
+     [](const RenderOptions& o) { return Json(o.learn.memory); }, if_it_learns},
     {"field_structure",
      [](RenderOptions& o, const Element& e) { o.learn.structure = Structure(choice(e, structures)); },
-     [](const RenderOptions& o) { return Json(structures[size_t(o.learn.structure)]); }},
+     [](const RenderOptions& o) { return Json(structures[size_t(o.learn.structure)]); }, if_guided},
     {"field_rule", [](RenderOptions& o, const Element& e) { o.learn.rule = Rule(choice(e, rules)); },
-     [](const RenderOptions& o) { return Json(rules[size_t(o.learn.rule)]); }},
+     [](const RenderOptions& o) { return Json(rules[size_t(o.learn.rule)]); }, if_guided},
     {"field_rate", [](RenderOptions& o, const Element& e) { o.learn.forget = choice(e, rates) == 1 ? 1 : 0.5f; },
-     [](const RenderOptions& o) { return Json(rates[o.learn.forget == 1]); }},
+     [](const RenderOptions& o) { return Json(rates[o.learn.forget == 1]); }, if_guided},
     {"light_choice",
      [](RenderOptions& o, const Element& e) { o.learn.lights = o.learn_lights = choice(e, light_choices) == 1; },
      [](const RenderOptions& o) {
        return Json(light_choices[o.learn.lights && (o.learn_lights || is_guided(o.integrator))]);
-     }},
+     },
+     if_it_chooses_lights},
     {"merge_radius", [](RenderOptions& o, const Element& e) { o.merge_radius = float(number(e, 0, 1e6)); },
-     [](const RenderOptions& o) { return Json(o.merge_radius); }},
+     [](const RenderOptions& o) { return Json(o.merge_radius); }, if_it_merges},
     {"final_gather", [](RenderOptions& o, const Element& e) { o.final_gather = int(integer(e, 1, 1024)); },
-     [](const RenderOptions& o) { return Json(o.final_gather); }},
+     [](const RenderOptions& o) { return Json(o.final_gather); }, if_it_gathers},
     {"train", [](RenderOptions& o, const Element& e) { o.learn.train = uint32_t(integer(e, 0, 1 << 20)); },
-     [](const RenderOptions& o) { return Json(o.learn.train); }},
+     [](const RenderOptions& o) { return Json(o.learn.train); }, if_it_trains},
 };
 
 const std::vector<std::string> budget_keys = {"cpu_seconds", "seconds", "spp"};
@@ -92,6 +131,9 @@ RenderOptions read_options(const Element& e) {
   get(e, "integrator", fmt::format("write one of {}", fmt::join(integrator_names(), ", ")));
   for (const Option& option : options_table)
     if (const auto given = find(e, option.key)) option.set(options, *given);
+  for (const Option& option : options_table)
+    if (const auto given = find(e, option.key))
+      if (const std::string why = option.refuse(options); !why.empty()) fail(*given, why);
   return options;
 }
 
