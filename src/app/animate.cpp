@@ -244,7 +244,9 @@ Work prepare(const AnimateArguments& a) {
   const std::shared_ptr<const Scene> last = load_frame(w.shooting, r.last), scene = load_frame(w.shooting, r.first);
   if (!a.at.empty() && scene->hints.first_time > scene->hints.last_time)
     throw Error(fmt::format("--at {}: nothing in the scene has an <animation>; leave it out", a.at));
-  for (const std::string& n : scene->notes)
+  std::vector<std::string> notes = w.shooting.timeline.notes;
+  notes.insert(notes.end(), scene->notes.begin(), scene->notes.end());
+  for (const std::string& n : notes)
     if (!a.quiet) fmt::print(stderr, "ajar: note: {}\n", n);
   w.options = render_options(a, *scene);
   w.sequence = sequence_options(a);

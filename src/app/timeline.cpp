@@ -188,6 +188,18 @@ Keyframes read_keyframes(const std::string& path) {
   return out;
 }
 
+// Such a key shapes what is before it, but no image shows it: of every parameter the first is told.
+void note_unreached(const std::string& path, Timeline& t) {
+  const int last = t.frames.count - 1;
+  for (const auto& [parameter, track] : t.tracks) {
+    const auto key = std::find_if(track.keys.begin(), track.keys.end(),
+                                  [&](const Track::Key& k) { return k.frame < 0 || k.frame > last; });
+    if (key != track.keys.end())
+      t.notes.push_back(fmt::format("{}: parameter \"{}\": no frame reaches its key at {:g}; they go from 0 to {}",
+                                    path, parameter, key->frame, last));
+  }
+}
+
 // Slope of a smooth track at a key: zero where it turns, and at both ends; else the harmonic mean of the slopes on both
 // sides, with which nothing overshoots (Fritsch and Butland 1984).
 double slope_at(const Track& track, size_t key, size_t value) {
@@ -209,6 +221,7 @@ Timeline make_timeline(const std::string& frames, const std::vector<std::string>
   if (!keyframes.empty()) keys = read_keyframes(keyframes);
   t.frames = parse_frames(frames, keys.frames);
   t.tracks = keys.tracks;
+  note_unreached(keyframes, t);
   for (const std::string& d : defines) {
     const size_t equals = d.find('=');
     if (equals == 0 || equals == d.npos) throw Error(fmt::format("-D {}: write -D name=FROM..TO or -D name=value", d));

@@ -30,6 +30,7 @@ struct Timeline {
   std::map<std::string, std::string> constant;  ///< -D name=value
   bool has_time = false;                        ///< of the scene's <animation>s, by the user
   double first_time = 0, last_time = 0;         ///< at the first and the last frame
+  std::vector<std::string> notes;               ///< what the user should know, one line each
 };
 
 /// frames: "48" (all of 48), "10-20/48" or "7/48"; "10-20" where the keyframes tell how many there are. defines:

@@ -326,6 +326,27 @@ TEST_F(Animate, KeyframesComeFromAFile) {
   EXPECT_EQ(frames("2/3"), "");
 }
 
+TEST_F(Animate, KeysThatNoFrameReachesAreTold) {
+  const auto notes = [&](const std::string& keys) {
+    write("keys.json", R"({"frames": 3, "parameters": {"door": )" + keys + "}}");
+    return make_timeline("", {"x=1..2"}, in("keys.json"), "").notes;
+  };
+  EXPECT_TRUE(notes("[[0, 1], [2, 2]]").empty());
+  EXPECT_TRUE(notes("[[0.5, 1], [1.5, 2]]").empty());
+  ASSERT_EQ(notes("[[-1, 1], [2, 2]]").size(), 1u);
+  const std::vector<std::string> one = notes("[[0, 1], [3.5, 2], [9, 3]]");
+  ASSERT_EQ(one.size(), 1u);
+  EXPECT_EQ(one[0], in("keys.json") + ": parameter \"door\": no frame reaches its key at 3.5; they go from 0 to 2");
+  CLI::App app;
+  add_animate(app);
+  std::vector<std::string> arguments = {"animate",       in("room.xml"), "--spp", "1",  "--keyframes",
+                                        in("keys.json"), "--integrator", "path",  "-o", in("k_%d.exr")};
+  std::reverse(arguments.begin(), arguments.end());
+  testing::internal::CaptureStderr();
+  app.parse(arguments);
+  EXPECT_SAYS(testing::internal::GetCapturedStderr(), "ajar: note: " + one[0] + "\n");
+}
+
 // The scene's own animation: the whole of it, unless the user wants a part.
 TEST_F(Animate, ScenesMoveByThemselves) {
   write("room.xml", R"(<scene version="3.0.0">
