@@ -140,12 +140,7 @@ void polarizer(Params& p, Material& m) {
 void two_colours(Params& p, Material& m) {
   m.reflectance = main_slot(p, {"diffuse_reflectance", "reflectance"}, 0.5f, Colour::reflectance);
   m.specular = slot(p, {"specular_reflectance"}, 0.2f, Colour::reflectance);
-  if (m.reflectance.texture != none || m.specular.texture != none) return;
-  const float sum = max_component(m.reflectance.value + m.specular.value);
-  if (sum <= 1) return;
-  note(p.loader, p.node, "diffuse and specular reflectance add up to more than 1: both were scaled down");
-  m.reflectance.value /= sum;
-  m.specular.value /= sum;
+  limit_sum(p, m);
 }
 
 void phong(Params& p, Material& m) {
@@ -355,6 +350,15 @@ uint32_t stand_in(Loader& loader, const Node& node) {
 }
 
 }  // namespace
+
+void limit_sum(Params& p, Material& m) {
+  if (m.reflectance.texture != none || m.specular.texture != none) return;
+  const float sum = max_component(m.reflectance.value + m.specular.value);
+  if (sum <= 1) return;
+  note(p.loader, p.node, "diffuse and specular reflectance add up to more than 1: both were scaled down");
+  m.reflectance.value /= sum;
+  m.specular.value /= sum;
+}
 
 uint32_t add_material(Loader& loader, const Node& node, const Material& material) {
   int size = 1;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -23,6 +24,8 @@ using DVec3 = glm::dvec3;
 /// without a limit (indices of refraction, roughness). emission: spectra as light, unbounded.
 enum class Colour { reflectance, ratio, emission };
 
+struct ObjFile;
+
 struct Loader {
   const Document& document;
   bool lenient = false;
@@ -36,6 +39,7 @@ struct Loader {
   std::map<std::string, uint32_t> images;                       ///< by path and decoding
   std::map<std::string, int> mesh_uses;                         ///< shapes that name a file
   std::map<std::string, Mesh> meshes;                           ///< parsed files that more than one shape names
+  std::shared_ptr<const ObjFile> obj;                           ///< the last that is more than one mesh
   std::map<std::string, uint64_t> sums;                         ///< of files, where no cache keeps them
   std::set<std::string> said;                                   ///< notes, each once
   std::vector<int> texture_sizes, material_sizes;               ///< elements of each, with all that is nested
@@ -147,6 +151,8 @@ uint32_t load_image_file(Loader& loader, const Node& node, const std::string& pa
 inline constexpr int max_tree = 64;
 uint32_t add_texture(Loader& loader, const Node& node, Texture&& texture);
 uint32_t add_material(Loader& loader, const Node& node, const Material& material);
+/// Scales constant diffuse and specular reflectances down that exceed 1 together.
+void limit_sum(Params& params, Material& material);
 
 /// RGB of wavelength [nm] and value pairs: linear between them, zero outside.
 Rgb rgb_of_list(std::vector<std::pair<double, double>> list, Colour kind);

@@ -1,105 +1,22 @@
+#include "obj.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <unordered_map>
 
 #include "ajar/core/error.h"
 #include "ajar/core/sampler.h"
-#include "digits.h"
-#include "mesh.h"
+#include "cursor.h"
 
 namespace ajar {
 namespace {
 
-// Corner of a face: indices from 0, none where the file gives none.
-struct Corner {
-  uint32_t v, vt, vn;
-  bool operator==(const Corner&) const = default;
-};
+using Corner = ObjFile::Corner;
+using Face = ObjFile::Face;
 
-struct Face {
-  size_t first;   // into corners; ends where the next face begins
-  uint32_t line;  // for messages
-};
-
-// The statements of the file, nothing joined yet.
-struct Statements {
-  std::vector<Vec3> v, vn;
-  std::vector<Vec2> vt;
-  std::vector<Rgb> colors;  // as many as v, or none
-  std::vector<Corner> corners;
-  std::vector<Face> faces;
-};
-
-struct Cursor {
-  const char* p;
-  const char* end;
-  const std::string& name;
-  uint32_t line = 1;
-
-  [[noreturn]] void fail(const std::string& what) const { throw Error(fmt::format("{}:{}: {}", name, line, what)); }
-
-  static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
-  bool at_break() const { return p == end || *p == '\n' || *p == '\r'; }
-
-  // Ends a line: LF, CR LF or CR.
-  void take_break() {
-    if (p == end) return;
-    if (*p == '\r' && p + 1 != end && p[1] == '\n') ++p;
-    ++p, ++line;
-  }
-
-  // Blanks, and line breaks that a backslash before them takes back.
-  void skip_blanks() {
-    while (p != end) {
-      if (is_blank(*p)) {
-        ++p;
-      } else if (*p == '\\') {
-        const char* q = p + 1;
-        while (q != end && is_blank(*q)) ++q;
-        if (q != end && *q != '\n' && *q != '\r') return;
-        p = q;
-        take_break();
-      } else {
-        return;
-      }
-    }
-  }
-
-  // At the end of what a statement says: a line break or a comment.
-  bool at_end() {
-    skip_blanks();
-    return at_break() || *p == '#';
-  }
-
-  // To the start of the next line. A comment is not continued.
-  void skip_line() {
-    while (!at_break()) ++p;
-    take_break();
-  }
-
-  bool ends_token() const { return at_break() || is_blank(*p) || *p == '#' || *p == '\\'; }
-
-  std::string token() const {
-    const char* q = p;
-    while (q != end && q - p < 40 && !is_blank(*q) && *q != '\n' && *q != '\r') ++q;
-    return std::string(p, q);
-  }
-
-  // Up to n numbers; returns how many there were.
-  int numbers(double* out, int n) {
-    int count = 0;
-    for (; count < n && !at_end(); ++count) {
-      const char* rest = read_number(p, end, out[count]);
-      const char* token_start = std::exchange(p, rest);
-      if (rest == token_start || !ends_token()) p = token_start, fail(fmt::format("\"{}\" is not a number", token()));
-    }
-    return count;
-  }
-};
-
-void read_vertex(Cursor& in, Statements& out) {
+void read_vertex(Cursor& in, ObjFile& out) {
   double x[7];
   const int n = in.numbers(x, 7);
   if (n < 3) in.fail(fmt::format("v has {} coordinates; it needs x y z", n));
@@ -115,7 +32,7 @@ void read_vertex(Cursor& in, Statements& out) {
   out.colors.back() = color;
 }
 
-void read_texture_vertex(Cursor& in, Statements& out) {
+void read_texture_vertex(Cursor& in, ObjFile& out) {
   double x[2] = {0, 0};
   if (in.numbers(x, 2) < 1) in.fail("vt has no coordinates");
   const Vec2 uv(x[0], x[1]);
@@ -123,7 +40,7 @@ void read_texture_vertex(Cursor& in, Statements& out) {
   out.vt.push_back(uv);
 }
 
-void read_normal(Cursor& in, Statements& out) {
+void read_normal(Cursor& in, ObjFile& out) {
   double x[3];
   const int n = in.numbers(x, 3);
   if (n < 3) in.fail(fmt::format("vn has {} coordinates; it needs x y z", n));
@@ -144,8 +61,8 @@ uint32_t read_index(Cursor& in, size_t so_far, const char* what) {
   return uint32_t(i - 1);
 }
 
-void read_face(Cursor& in, Statements& out) {
-  out.faces.push_back({out.corners.size(), in.line});
+void read_face(Cursor& in, ObjFile& out, uint32_t material) {
+  out.faces.push_back({out.corners.size(), in.line, material});
   while (!in.at_end()) {
     Corner c{read_index(in, out.v.size(), "v"), none, none};
     if (!in.at_break() && *in.p == '/') {
@@ -161,44 +78,11 @@ void read_face(Cursor& in, Statements& out) {
   }
 }
 
-// The name after usemtl: all of the line, for names have blanks.
-std::string_view read_name(Cursor& in) {
-  in.skip_blanks();
-  const char* begin = in.p;
-  while (!in.at_break()) ++in.p;
-  const char* end = in.p;
-  while (end != begin && Cursor::is_blank(end[-1])) --end;
-  return {begin, size_t(end - begin)};
-}
-
-Statements read_statements(std::string_view text, const std::string& name, const MeshOptions& options) {
-  Statements out;
-  const auto takes = [&](std::string_view material) {
-    return !options.takes_material || options.takes_material(material);
-  };
-  bool taking = takes("");
-  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
-  out.v.reserve(text.size() / 128), out.corners.reserve(text.size() / 32);
-  Cursor in{text.data(), text.data() + text.size(), name};
-  while (in.p != in.end) {
-    if (!in.at_end()) {
-      const char* word = in.p;
-      while (!in.ends_token()) ++in.p;
-      const std::string_view keyword(word, size_t(in.p - word));
-      if (keyword == "v")
-        read_vertex(in, out);
-      else if (keyword == "vt")
-        read_texture_vertex(in, out);
-      else if (keyword == "vn")
-        read_normal(in, out);
-      else if (keyword == "f" && taking)
-        read_face(in, out);
-      else if (keyword == "usemtl")
-        taking = takes(read_name(in));
-    }
-    in.skip_line();
-  }
-  return out;
+// Index of a material by its name, a new one where there is none yet.
+uint32_t name_material(ObjFile& out, std::unordered_map<std::string, uint32_t>& known, const std::string& name) {
+  const auto [at, added] = known.emplace(name, uint32_t(out.materials.size()));
+  if (added) out.materials.push_back(name);
+  return at->second;
 }
 
 // Open addressing from corners to vertices of the mesh.
@@ -230,27 +114,34 @@ struct VertexTable {
   }
 };
 
-void check_range(const Statements& in, const Face& face, const Corner& c, const std::string& name) {
+void check_range(const ObjFile& in, const Face& face, const Corner& c) {
   const auto check = [&](uint32_t i, size_t n, const char* what) {
     if (i != none && i >= n)
-      throw Error(fmt::format("{}:{}: f names {} {} of {}", name, face.line, what, uint64_t(i) + 1, n));
+      throw Error(fmt::format("{}:{}: f names {} {} of {}", in.name, face.line, what, uint64_t(i) + 1, n));
   };
   check(c.v, in.v.size(), "v");
   check(c.vt, in.vt.size(), "vt");
   check(c.vn, in.vn.size(), "vn");
 }
 
-Mesh join(const Statements& in, const std::string& name) {
+std::vector<bool> taken_materials(const ObjFile& in, const MeshOptions& options) {
+  std::vector<bool> taken;
+  for (const std::string& name : in.materials) taken.push_back(!options.takes_material || options.takes_material(name));
+  return taken;
+}
+
+Mesh join_corners(const ObjFile& in, const std::vector<bool>& taken) {
   Mesh mesh;
   VertexTable table;
   std::vector<uint32_t> polygon;
-  mesh.triangles.reserve(in.corners.size() / 2);
+  if (std::find(taken.begin(), taken.end(), false) == taken.end()) mesh.triangles.reserve(in.corners.size() / 2);
   for (size_t f = 0; f < in.faces.size(); ++f) {
+    if (!taken[in.faces[f].material]) continue;
     const size_t end = f + 1 < in.faces.size() ? in.faces[f + 1].first : in.corners.size();
     polygon.clear();
     for (size_t i = in.faces[f].first; i < end; ++i) {
       const Corner& c = in.corners[i];
-      check_range(in, in.faces[f], c, name);
+      check_range(in, in.faces[f], c);
       polygon.push_back(table.find(c));
       if (table.keys.size() > mesh.positions.size()) mesh.positions.push_back(in.v[c.v]);
     }
@@ -271,10 +162,42 @@ Mesh join(const Statements& in, const std::string& name) {
 
 }  // namespace
 
-Mesh parse_obj(std::string_view text, const std::string& name, const MeshOptions& options) {
-  Mesh mesh = join(read_statements(text, name, options), name);
-  complete(mesh, options, name);
+ObjFile scan_obj(std::string_view text, const std::string& name) {
+  ObjFile out;
+  out.name = name;
+  out.materials.emplace_back();
+  std::unordered_map<std::string, uint32_t> known{{"", 0}};
+  uint32_t material = 0;
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  out.v.reserve(text.size() / 128), out.corners.reserve(text.size() / 32);
+  Cursor in{text.data(), text.data() + text.size(), name};
+  for (; in.p != in.end; in.skip_line()) {
+    if (in.at_end()) continue;
+    const std::string_view keyword = in.word();
+    if (keyword == "v")
+      read_vertex(in, out);
+    else if (keyword == "vt")
+      read_texture_vertex(in, out);
+    else if (keyword == "vn")
+      read_normal(in, out);
+    else if (keyword == "f")
+      read_face(in, out, material);
+    else if (keyword == "mtllib")
+      out.libraries.emplace_back(read_name(in));
+    else if (keyword == "usemtl")
+      material = name_material(out, known, std::string(read_name(in)));
+  }
+  return out;
+}
+
+Mesh join(const ObjFile& file, const MeshOptions& options) {
+  Mesh mesh = join_corners(file, taken_materials(file, options));
+  complete(mesh, options, file.name);
   return mesh;
+}
+
+Mesh parse_obj(std::string_view text, const std::string& name, const MeshOptions& options) {
+  return join(scan_obj(text, name), options);
 }
 
 Mesh read_obj(const std::string& path, const MeshOptions& options) {

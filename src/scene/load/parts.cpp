@@ -3,24 +3,33 @@
 namespace ajar {
 namespace {
 
+// The faces that no bsdf is for; all of them where there is no other part.
+std::vector<Part> with_rest(Params& p, std::vector<Part> parts, const Node* bsdf) {
+  const bool own = p.loader.document.old && p.node.type == "obj" && bsdf == nullptr;
+  if (own && boolean(p, "load_materials", true)) add_library_parts(p, parts);
+  if (parts.empty()) return {{"", bsdf, {}}};
+  std::set<std::string, std::less<>> names;
+  for (const Part& part : parts) names.insert(part.name);
+  parts.push_back({"", bsdf, [names](std::string_view m) { return !names.contains(m); }});
+  return parts;
+}
+
 std::vector<Part> parts_by_name(Params& p) {
   std::vector<Part> parts;
-  std::set<std::string, std::less<>> names;
-  Part rest;
+  std::set<std::string> names;
+  const Node* rest = nullptr;
   for (const Node& child : p.node.children) {
     const Node& meant = follow(p.loader, child);
     if (meant.tag != "bsdf") continue;
-    if (child.named.empty() && rest.bsdf != nullptr) fail(p.loader, child, "is the second bsdf without a name");
+    if (child.named.empty() && rest != nullptr) fail(p.loader, child, "is the second bsdf without a name");
     if (child.named.empty()) {
-      rest.bsdf = &meant;
+      rest = &meant;
       continue;
     }
     if (!names.insert(child.named).second) fail(p.loader, child, "has the name of another bsdf");
     parts.push_back({child.named, &meant, [name = child.named](std::string_view m) { return m == name; }});
   }
-  rest.takes = [names](std::string_view m) { return !names.contains(m); };
-  parts.push_back(std::move(rest));
-  return parts;
+  return with_rest(p, std::move(parts), rest);
 }
 
 }  // namespace
@@ -29,11 +38,12 @@ std::vector<Part> parts_of(Params& p) {
   const std::vector<const Node*> bsdfs = nested(p, "bsdf");
   if (bsdfs.size() > 1 && p.node.type == "obj") return parts_by_name(p);
   if (bsdfs.size() > 1) fail(p.loader, p.node, "has more than one bsdf");
-  return {{"", bsdfs.empty() ? nullptr : bsdfs.front(), {}}};
+  return with_rest(p, {}, bsdfs.empty() ? nullptr : bsdfs.front());
 }
 
 uint32_t material_of(Params& p, const Part& part, bool emits) {
   if (part.bsdf != nullptr) return load_bsdf(p.loader, *part.bsdf);
+  if (part.material != none) return part.material;
   if (p.loader.document.old && !emits && !nested(p, "medium").empty()) {  // the bounds of a medium are not seen
     Material m;
     m.kind = MaterialKind::null;

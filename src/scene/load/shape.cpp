@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 
 #include "ajar/core/error.h"
+#include "obj.h"
 #include "parts.h"
 
 namespace ajar {
@@ -168,23 +168,15 @@ void file_mesh(Params& p, Shape& shape, const std::string& key, MeshOptions opti
   shape.mesh = add_mesh(p, std::move(mesh));
 }
 
-// Mitsuba 0.x takes materials from there, where the scene names none.
-void note_materials(Params& p, const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::string head(4096, '\n');
-  in.read(head.data(), std::streamsize(head.size()));
-  if (head.starts_with("mtllib ") || head.find("\nmtllib ") != head.npos)
-    note(p.loader, p.node, "the materials that its mtllib names are not read: grey; give it a <bsdf>");
-}
-
 void obj(Params& p, Shape& shape, const Part& part) {
   const std::string path = file(p, "filename");
-  if (p.loader.document.old && part.bsdf == nullptr && !part.takes) note_materials(p, path);
   MeshOptions options;
   options.flip_v = true;
   options.takes_material = part.takes;
-  file_mesh(p, shape, part.takes ? path + "#" + part.name : path, options,
-            [&](const MeshOptions& o) { return read_obj(path, o); });
+  file_mesh(p, shape, part.takes ? path + "#" + part.name : path, options, [&](const MeshOptions& o) {
+    const bool open = part.takes || (p.loader.obj && p.loader.obj->name == path);
+    return open ? join(open_obj(p.loader, path), o) : read_obj(path, o);
+  });
 }
 
 void ply(Params& p, Shape& shape, const Part&) {
@@ -331,7 +323,7 @@ void load_shape(Loader& loader, const Node& node, uint32_t group) {
   if (entry == std::end(entries))
     return unsupported(loader, node, fmt::format("unknown shape; {}", supported), "left out");
   for (const Part& part : parts_of(p)) load_part(p, entry->read, part, group);
-  finish(p, {"id", "velocity"});
+  finish(p, {"id", "velocity", "collapse"});
 }
 
 }  // namespace ajar

@@ -1,15 +1,17 @@
 // libFuzzer's entry point for the mesh readers. The first byte chooses the format (0 OBJ, 1 PLY, 2 serialized, 3
-// what a serialized mesh compresses), the second the options; the rest is the file.
+// what a serialized mesh compresses, 4 MTL), the second the options; the rest is the file.
 #include <cstdio>
 #include <cstdlib>
 
 #include "ajar/core/error.h"
 #include "mesh_samples.h"
+#include "scene/load/mtl.h"
 
 namespace {
 
 ajar::Mesh parse(int format, const std::string& bytes, int shape_index, const ajar::MeshOptions& options) {
   using namespace ajar;
+  if (format == 4) return parse_mtl(bytes, "fuzz"), Mesh();
   if (format == 0) return parse_obj(bytes, "fuzz", options);
   if (format == 1) return parse_ply(kit::as_bytes(bytes), "fuzz", options);
   if (format == 2) return parse_serialized(kit::as_bytes(bytes), "fuzz", shape_index, options);
@@ -29,7 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (choice & 16) options.to_world[0][0] = -2;
   try {
     const std::string bytes(reinterpret_cast<const char*>(data) + 2, size - 2);
-    const ajar::Mesh mesh = parse(data[0] % 4, bytes, choice >> 5, options);
+    const ajar::Mesh mesh = parse(data[0] % 5, bytes, choice >> 5, options);
     if (const std::string wrong = ajar::kit::unsound(mesh); !wrong.empty()) {
       std::fprintf(stderr, "unsound mesh: %s\n", wrong.c_str());
       std::abort();

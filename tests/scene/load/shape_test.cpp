@@ -194,14 +194,6 @@ TEST(Shapes, MediaAreRefused) {
   EXPECT_TRUE(says(load_inside(named + shape("cube")).notes, "participating media"));
 }
 
-// Mitsuba 0.x takes materials from an obj's mtllib where the scene has none; who expects that is told.
-TEST(Shapes, MaterialsOfObjAreNoted) {
-  const std::string painted = "<shape type='obj'><string name='filename' value='painted.obj'/>", end = "</shape>";
-  EXPECT_TRUE(says(load_inside(painted + end, {}, "0.6.0").notes, "mtllib names are not read"));
-  EXPECT_FALSE(says(load_inside(painted + "<bsdf type='diffuse'/>" + end, {}, "0.6.0").notes, "mtllib"));
-  EXPECT_FALSE(says(load_inside(painted + end).notes, "mtllib"));
-}
-
 // In 0.x what only bounds a medium is not seen; later versions see a diffuse surface.
 TEST(Shapes, BoundsOfMedia) {
   const auto kind = [](const std::string& inner, const char* version) {
