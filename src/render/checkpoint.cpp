@@ -7,7 +7,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind checkpoint_kind = {"AJARck13", "checkpoint", "render once with --checkpoint",
+constexpr FileKind checkpoint_kind = {"AJARck14", "checkpoint", "render once with --checkpoint",
                                       "start again without --resume"};
 
 // One list of fields for both ways.
@@ -53,6 +53,8 @@ void plain_fields(Io& io, State& plain) {
   io.value(plain.taken), io.value(plain.settled), io.value(plain.passes), io.value(plain.ratio);
   io.value(plain.missed), io.value(plain.rays), io.value(plain.seen.passes), io.array(plain.seen.sum),
       io.array(plain.seen.half);
+  io.value(plain.returned);
+  film_fields(io, plain.guided);
 }
 
 void read(Reader& r, Pyramid& pyramid) {
@@ -108,8 +110,10 @@ void load_checkpoint(const std::string& path, const std::string& key, RenderStat
   if (!state.pyramid.kept) state.pyramid = {};
   r.value(state.pixels_per_light);
   r.require(state.pixels_per_light == RenderState::most_light || state.pixels_per_light == RenderState::least_light);
+  state.plain.guided = state.film;  // for its place and filter, which are not in the file
   plain_fields(r, state.plain);
   r.require(state.plain.seen.half.size() == state.plain.seen.sum.size());
+  r.require(state.plain.guided.passes == 0 || is_sound(state.plain.guided, pixels));
   read(r, state.learning);
   r.finish();
 }

@@ -136,7 +136,8 @@ void trace_photon(const Job&, Sample&, Scratch&);
 
 /// The job of path tracing in a guided integrator's place: as path would have it, on the same film.
 Job plainly(Job job);
-/// After 4, 8, 16 ... 64 passes of a guided integrator: whether path tracing takes over, in RenderState::plain (L2).
+/// After 4, 8, 16 ... 64 passes of a guided integrator: whether path tracing takes over, in RenderState::plain (L2);
+/// after 8, 16, 32 ..., where it did: whether it gives the render back, which then is as it was.
 /// Scratches' counters are left empty.
 void try_plain(const Job& job, const std::string& integrator, std::vector<Scratch>& scratches, RenderState& state);
 

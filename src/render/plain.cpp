@@ -29,13 +29,19 @@ constexpr double blur = 1.5;
 // relMSE of a sample. Above, samples are so uneven that a few thousand pixels do not tell their error, and path tracing
 // is not what the scene needs.
 constexpr double tame = 1, wild = 4;
+// Once path tracing took over, above this it gives the render back; for so long, times the passes until then.
+constexpr double turned_wild = 2;
+constexpr uint32_t doubted = 64;
 
 uint64_t ray_count(const Counters& n) { return n.camera_rays + n.light_rays + n.shadow_rays; }
 
-// First pixel of each square: a sixteenth of the film's, as far as the bounds allow.
-std::vector<uint32_t> choose_squares(const Film& film) {
-  const uint32_t across = uint32_t(film.width / plain_side), all = across * uint32_t(film.height / plain_side);
-  const uint32_t count = std::min(std::clamp(all / 16, least_squares, most_squares), all);
+uint32_t square_count(const Film& film) {
+  return uint32_t(film.width / plain_side) * uint32_t(film.height / plain_side);
+}
+
+// First pixel of each of some squares, spread over the film.
+std::vector<uint32_t> spread_squares(const Film& film, uint32_t count) {
+  const uint32_t across = uint32_t(film.width / plain_side), all = square_count(film);
   std::vector<uint32_t> out;
   for (uint32_t k = 0; k < count; ++k) {
     const uint32_t i = uint32_t((uint64_t(k) * 2 + 1) * all / (2 * count));
@@ -121,6 +127,30 @@ Mean mean_of(const std::vector<double>& x) {
   return {mean, std::sqrt(std::max(square_sum / n - sqr(mean), 0.0) / n)};
 }
 
+PassHalves operator-(PassHalves a, const PassHalves& b) {
+  a.passes -= b.passes;
+  for (size_t i = 0; i < a.sum.size(); ++i) a.sum[i] -= b.sum[i], a.half[i] -= b.half[i];
+  return a;
+}
+
+// Path tracing that took over: its passes of the whole film are there to be held against the guided image, at no cost.
+// What lies in a few squares shows here, and what it finds in one sample of many thousands.
+void doubt_plain(RenderState& state) {
+  Plain& plain = state.plain;
+  Film& film = state.film;
+  if (film.chunks > 0 || film.passes == plain.passes || !std::has_single_bit(film.passes)) return;
+  const std::vector<uint32_t> all = spread_squares(film, square_count(film));
+  const PassHalves guided = halves_of(plain.guided, all), since = halves_of(film, all) - guided;
+  const PlainLook look = compare_halves(guided, since);
+  plain.taken = (look.plain + look.missed) * since.passes <= turned_wild;
+  if (!plain.taken) {
+    film = std::move(plain.guided);
+    plain.returned = since.passes;
+    state.stats.ledger = {};  // it holds what is no longer in the image
+  }
+  if (!plain.taken || film.passes >= doubted * plain.passes) plain.guided = {};
+}
+
 }  // namespace
 
 PlainLook compare_halves(const PassHalves& guided, const PassHalves& plain) {
@@ -161,10 +191,12 @@ Job plainly(Job job) {
 
 void try_plain(const Job& job, const std::string& integrator, std::vector<Scratch>& scratches, RenderState& state) {
   Plain& plain = state.plain;
+  if (plain.guided.passes > 0) return doubt_plain(state);
   const Film& film = state.film;
   const bool due = std::has_single_bit(film.passes) && film.passes >= first_look && film.passes <= last_look;
   if (plain.settled || film.chunks > 0 || !due || plain.passes == film.passes) return;
-  const std::vector<uint32_t> squares = choose_squares(film);
+  const uint32_t all = square_count(film), count = std::clamp(all / 16, least_squares, most_squares);
+  const std::vector<uint32_t> squares = spread_squares(film, std::min(count, all));
   if (squares.empty()) return;
   const Job without = plainly(job);
   trace_to(film.passes, without, film, squares, scratches, plain);
@@ -185,6 +217,7 @@ void try_plain(const Job& job, const std::string& integrator, std::vector<Scratc
   plain.settled = plain.taken || film.passes == last_look || plain.ratio > much_worse || error * passes > wild ||
                   (film.passes >= settling && plain.ratio > worse);
   if (plain.settled) plain.seen = {};
+  if (plain.taken && film.splats) plain.guided = film;
 }
 
 }  // namespace ajar

@@ -351,7 +351,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
     if (plain) batch.halves.clear();
     job.walk.merging = merging && !plain ? merging_of(scene, options, film, equal_chunks(all)) : Merging{};
     job.walk.merging.paths /= share_of(job, film);
-    threads.run([&] { set_light_paths(joined, state, job); });
+    threads.run([&] { set_light_paths(joined && !plain, state, job); });
     const uint32_t count = merging && !plain ? std::min(equal_chunks(all), all - from)
                                              : std::min({batch_chunks, all - from, affordable_chunks(options, state)});
     batch.splats.resize(count);

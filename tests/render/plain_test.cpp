@@ -2,7 +2,9 @@
 #include <algorithm>
 
 #include "ajar/core/sampler.h"
+#include "ajar/scene/load.h"
 #include "bytes.h"
+#include "kit/files.h"
 
 namespace ajar {
 namespace {
@@ -131,6 +133,65 @@ TEST(Plain, LeavesAnotherImageAsItIs) {
   expect_same_bytes(looked, rendered(scene, accel, options_of("guided-bdpt", 20)));
 }
 
+// Light in one square of 64 that path tracing never finds.
+void add_caustic(Film& film) {
+  for (int i = 0; i < int(square); ++i) {
+    const size_t pixel = size_t((40 + i / plain_side) * film.width + 24 + i % plain_side);
+    const glm::dvec3 light(film.passes * 4.0);
+    film.splat_sum[pixel] += light, film.half_sum[pixel] += 0.5 * light;
+  }
+}
+
+void expect_same_image(const RenderState& a, const RenderState& b) {
+  EXPECT_EQ(a.film.passes, b.film.passes);
+  EXPECT_TRUE(same_bytes(a.film.camera_sum, b.film.camera_sum));
+  EXPECT_TRUE(same_bytes(a.film.splat_sum, b.film.splat_sum));
+  EXPECT_TRUE(same_bytes(a.film.half_sum, b.film.half_sum));
+  EXPECT_TRUE(same_bytes(a.film.square_sum, b.film.square_sum));
+  expect_same_learning(a.learning, b.learning);
+}
+
+RenderState resumed(const Scene& scene, const Accel& accel, const RenderOptions& options, const RenderState& state) {
+  const File file("plain");
+  save_checkpoint(file.path, "key", state);
+  RenderState again = start_render(scene, options);
+  load_checkpoint(file.path, "key", again);
+  render(scene, accel, options, again, {});
+  return again;
+}
+
+// As if path tracing had never taken over, wherever the render was interrupted.
+TEST(Plain, GivesBackWhatItDoesNotSee) {
+  Scene scene = stage(64);
+  finish(scene);
+  const Accel accel(scene);
+  RenderState state = rendered(scene, accel, sparing("guided-bdpt", 4));
+  add_caustic(state.film);
+  const RenderState guided = resumed(scene, accel, options_of("guided-bdpt", 12), state);
+  state.plain.taken = state.plain.settled = true, state.plain.passes = 4, state.plain.guided = state.film;
+  const RenderState straight = resumed(scene, accel, sparing("guided-bdpt", 12), state);
+  EXPECT_EQ(straight.plain.returned, 4u);
+  EXPECT_FALSE(straight.plain.taken);
+  EXPECT_EQ(straight.plain.guided.passes, 0u);
+  expect_same_image(straight, guided);
+  RenderOptions o = sparing("guided-bdpt", 6);
+  render(scene, accel, o, state, {});
+  EXPECT_EQ(state.film.passes, 6u);
+  expect_same_bytes(resumed(scene, accel, sparing("guided-bdpt", 12), state), straight);
+}
+
+// A sun of four texels behind a ball of glass: 32 squares and a dozen samples do not meet its caustic.
+TEST(Plain, GivesBackWhatIsRare) {
+  LoadOptions load;
+  load.defines = {{"resx", "96"}, {"resy", "54"}};
+  const Scene scene = load_scene(source_path("scenes/environment/environment.xml"), load);
+  const Accel accel(scene);
+  const RenderState state = rendered(scene, accel, sparing("guided-bdpt", 68));
+  EXPECT_FALSE(state.plain.taken);
+  EXPECT_GE(state.plain.returned, 4u);
+  expect_same_image(state, rendered(scene, accel, options_of("guided-bdpt", 68)));
+}
+
 TEST(Plain, IsLeftAloneWhereFieldsAreAskedFor) {
   RenderOptions o = sparing("guided-bdpt", 8);
   EXPECT_TRUE(may_leave_out(o));
@@ -156,13 +217,10 @@ TEST(Plain, IsTheSameToTheByte) {
   o.threads = 1;
   expect_same_bytes(straight, rendered(scene, accel, o));
   for (const uint32_t stop : {2u, 4u, 6u, 8u, 20u}) {
-    const File file("plain");
     o.spp = stop;
-    save_checkpoint(file.path, "key", rendered(scene, accel, o));
+    const RenderState stopped = rendered(scene, accel, o);
     o.spp = 24;
-    RenderState again = start_render(scene, o);
-    load_checkpoint(file.path, "key", again);
-    render(scene, accel, o, again, {});
+    const RenderState again = resumed(scene, accel, o, stopped);
     expect_same_bytes(straight, again);
     EXPECT_EQ(again.plain.passes, straight.plain.passes) << stop;
   }

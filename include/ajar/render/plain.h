@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "ajar/film/film.h"
+
 namespace ajar {
 
 /// Luminance of the pixels of squares of plain_side x plain_side pixels, one after another: sums over passes, and over
@@ -35,6 +37,8 @@ struct Plain {
   double missed = 0;     ///< the greatest PlainLook::missed of a sample, halved from look to look
   uint64_t rays = 0;     ///< that it took
   PassHalves seen;
+  Film guided;            ///< the image when path tracing took over, while it may still be given back; else empty
+  uint32_t returned = 0;  ///< passes of path tracing that were dropped when it was
 };
 
 }  // namespace ajar
