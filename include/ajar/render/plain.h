@@ -1,5 +1,5 @@
 // Enters: the image of a guided integrator after 4, 8, 16 ... passes, and some of its pixels as path tracing sees them.
-// Leaves: whether plain path tracing needs less time to equal error, so that it does the rest.
+// Leaves: whether plain path tracing needs less time to equal error, so that it does the rest, or gives it back.
 #pragma once
 
 #include <cstdint>
