@@ -32,6 +32,8 @@ constexpr double tame = 1, wild = 4;
 // Once path tracing took over, above this it gives the render back; for so long, times the passes until then.
 constexpr double turned_wild = 2;
 constexpr uint32_t doubted = 64;
+// Passes, at most, by which what it missed then counts: where the guided image is too bright by chance, it stays so.
+constexpr double rarest = 32;
 
 uint64_t ray_count(const Counters& n) { return n.camera_rays + n.light_rays + n.shadow_rays; }
 
@@ -142,7 +144,8 @@ void doubt_plain(RenderState& state) {
   const std::vector<uint32_t> all = spread_squares(film, square_count(film));
   const PassHalves guided = halves_of(plain.guided, all), since = halves_of(film, all) - guided;
   const PlainLook look = compare_halves(guided, since);
-  plain.taken = (look.plain + look.missed) * since.passes <= turned_wild;
+  const double passes = since.passes;
+  plain.taken = look.plain * passes + look.missed * std::min(passes, rarest) <= turned_wild;
   if (!plain.taken) {
     film = std::move(plain.guided);
     plain.returned = since.passes;
