@@ -29,7 +29,7 @@ constexpr double blur = 1.5;
 // relMSE of a sample. Above, samples are so uneven that a few thousand pixels do not tell their error, and path tracing
 // is not what the scene needs.
 constexpr double tame = 1, wild = 4;
-// Once path tracing took over, above this it gives the render back; for so long, times the passes until then.
+// Once path tracing took over, above this it gives the render back, until there are so many times the passes.
 constexpr double turned_wild = 2;
 constexpr uint32_t doubted = 64;
 // Passes, at most, by which what it missed then counts: where the guided image is too bright by chance, it stays so.
