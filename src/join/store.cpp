@@ -3,6 +3,7 @@
 #include <array>
 
 #include "ajar/join/visibility.h"
+#include "ajar/scene/bsdf/gloss.h"
 
 namespace ajar {
 using Values = std::array<float, LightStore::width>;
@@ -25,21 +26,60 @@ void put(LightStore::Block& b, uint32_t i, const Vertex& v, const LightStore::Pl
   b.near[i] = near;
   b.behind[i] = v.guide.bsdf.opaque ? 0.0f : -1.0f;
   b.region[i] = at.region, b.path[i] = at.path, b.s[i] = at.s;
+  const Vec3 w = v.guide.wo;
+  const Gloss gloss = gloss_of(v.guide.bsdf, v.guide.wo_local);
+  b.glossy |= gloss.peak > 0;
+  b.wx[i] = w.x, b.wy[i] = w.y, b.wz[i] = w.z;
+  b.matt[i] = gloss.matt, b.peak[i] = gloss.peak, b.f0[i] = gloss.f0, b.alpha[i] = gloss.alpha;
 }
 
-// What joins bring, up to a factor that all of a camera vertex share: unoccluded, both ends taken for diffuse, with the
-// weight against the camera subpath that finds the light vertex, or the light subpath that finds the camera's.
-void expect(const LightStore::Block& b, const Vertex& c, float near, int most, Values& out) {
-  const Vec3 p = c.p, n = c.guide.frame.n;
-  const float behind = c.guide.bsdf.opaque ? 0.0f : -1.0f;
+// A camera vertex, as joins with many lights see it.
+struct Seer {
+  const Vertex* vertex;
+  Gloss gloss;
+  float near;
+};
+Seer seer_of(const Vertex& v, float near) { return {&v, gloss_of(v.guide.bsdf, v.guide.wo_local), near}; }
+
+// What joins bring, up to a factor that all of a camera vertex share: unoccluded, with the weight against the camera
+// subpath that finds the light vertex, or the light subpath that finds the camera's.
+template <bool glossy, bool glossy_light>
+void expect(const LightStore::Block& b, const Seer& seer, int most, Values& out) {
+  const Guide& guide = seer.vertex->guide;
+  const Vec3 p = seer.vertex->p, n = guide.frame.n, wo = guide.wo;
+  const float behind = guide.bsdf.opaque ? 0.0f : -1.0f, n_o = guide.wo_local.z, near = seer.near;
+  const Gloss g = seer.gloss;
   for (uint32_t i = 0; i < LightStore::width; ++i) {
     const float x = p.x - b.x[i], y = p.y - b.y[i], z = p.z - b.z[i];
     const float d2 = std::max(x * x + y * y + z * z, 1e-30f);
     const float cos_a = b.nx[i] * x + b.ny[i] * y + b.nz[i] * z, cos_c = -(n.x * x + n.y * y + n.z * z);
     const float faces = std::max(cos_a, b.behind[i] * cos_a) * std::max(cos_c, behind * cos_c);
-    const float g = faces / d2 / d2;
-    out[i] = b.s[i] <= most ? b.flux[i] * g / (1 + g * (b.near[i] + near)) : 0;  // (J1)
+    const float geometry = faces / d2 / d2, per_d = glossy || glossy_light ? 1 / std::sqrt(d2) : 0;
+    float here = 1, there = 1;
+    if constexpr (glossy) {
+      const float between = -(wo.x * x + wo.y * y + wo.z * z) * per_d;
+      here = shine(g.matt, g.peak, g.f0, g.alpha, n_o, cos_c * per_d, between);
+    }
+    if constexpr (glossy_light) {
+      const float between = (b.wx[i] * x + b.wy[i] * y + b.wz[i] * z) * per_d;
+      const float n_w = b.nx[i] * b.wx[i] + b.ny[i] * b.wy[i] + b.nz[i] * b.wz[i];
+      there = shine(b.matt[i], b.peak[i], b.f0[i], b.alpha[i], n_w, cos_a * per_d, between);
+    }
+    const float brings = b.flux[i] * geometry * here * there;
+    out[i] = b.s[i] <= most ? brings / (1 + geometry * (b.near[i] * here + near * there)) : 0;  // (J1)
   }
+}
+
+void expect(const LightStore::Block& b, const Seer& seer, int most, Values& out) {
+  const bool glossy = seer.gloss.peak > 0;
+  if (glossy && b.glossy)
+    expect<true, true>(b, seer, most, out);
+  else if (glossy)
+    expect<true, false>(b, seer, most, out);
+  else if (b.glossy)
+    expect<false, true>(b, seer, most, out);
+  else
+    expect<false, false>(b, seer, most, out);
 }
 
 }  // namespace
@@ -171,7 +211,7 @@ void choose(const LightStore& store, const Vertex& camera, double inner, int mos
   const uint32_t block = std::min(uint32_t(u.x * float(n)), n - 1);
   const LightStore::Block& b = store.blocks[block];
   Values values;
-  expect(b, camera, near_of(camera, inner), most, values);
+  expect(b, seer_of(camera, near_of(camera, inner)), most, values);
   apply_chances(b, camera, values);
   const Sums sums = sums_of(values);
   const float sum = sums.back();
@@ -190,9 +230,10 @@ void expect_all(const LightStore& store, const Vertex& camera, int most, const V
                 Expectation& out) {
   out.values.resize(store.blocks.size());
   out.sum = 0;
+  const Seer seer = seer_of(camera, 0);
   for (size_t block = 0; block < store.blocks.size(); ++block) {
     Values& values = out.values[block];
-    expect(store.blocks[block], camera, 0, most, values);
+    expect(store.blocks[block], seer, most, values);
     if (visibility)
       for (uint32_t i = 0; i < LightStore::width; ++i) values[i] *= visibility->blocks[block].chance[i];
     std::array<float, 8> part{};

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "ajar/scene/bsdf/gloss.h"
 #include "room.h"
 
 namespace ajar::room {
@@ -155,6 +156,13 @@ TEST(LightStore, StandsForAllPlacesAtAnySize) {
   }
 }
 
+// How much more a vertex scatters towards w than if it were matt. (J6)
+double shine_of(const Vertex& v, const glm::dvec3& w) {
+  const Gloss g = gloss_of(v.guide.bsdf, v.guide.wo_local);
+  const Vec3 unit(glm::normalize(w)), n = v.guide.frame.n;
+  return shine(g.matt, g.peak, g.f0, g.alpha, glm::dot(n, v.guide.wo), glm::dot(n, unit), glm::dot(unit, v.guide.wo));
+}
+
 // The probabilities that places ought to have, from the vertices themselves. (J1)
 std::vector<double> probabilities(const LightStore& store, const Room& room, const Vertex& c) {
   const size_t n = store.blocks.size();
@@ -164,12 +172,13 @@ std::vector<double> probabilities(const LightStore& store, const Room& room, con
     const glm::dvec3 w = glm::dvec3(c.p) - glm::dvec3(a.p);
     const double d2 = glm::dot(w, w), cosines = std::max(glm::dot(glm::dvec3(a.guide.frame.n), w), 0.0) *
                                                 std::max(-glm::dot(glm::dvec3(c.guide.frame.n), w), 0.0) / d2;
-    const double g = cosines / d2, found = g / pi * (1 / a.own + 1 / c.own);
+    const double shines_c = shine_of(c, -w), shines_a = shine_of(a, w);
+    const double g = cosines / d2, found = g / pi * (shines_c / a.own + shines_a / c.own);
     const double flux = luminance(a.beta) * std::max(luminance(albedo(a.guide.bsdf, a.guide.wo_local)), 0.02f);
     double sees = 1;
     if (a.guide.cell != none && c.guide.cell != none)
       sees = chance(room.fields.views, room.fields.cells[a.guide.cell].region, room.fields.cells[c.guide.cell].region);
-    p.push_back(flux * g / (1 + found) * sees);
+    p.push_back(flux * g * shines_c * shines_a / (1 + found) * sees);
     sums[i % n] += p.back();
   }
   for (size_t i = 0; i < p.size(); ++i) p[i] /= sums[i % n] > 0 ? sums[i % n] * double(n) : 1;

@@ -30,6 +30,9 @@ struct LightStore {
     float flux[width] = {};    ///< luminance that it scatters at right angles, taken as diffuse [per solid angle]; or 0
     float near[width] = {};    ///< (J1): geometry terms above 1 / near make the join the lesser strategy
     float behind[width] = {};  ///< -1 where it scatters to the other side too, else 0
+    bool glossy = false;       ///< whether what follows says anything (J6)
+    float wx[width] = {}, wy[width] = {}, wz[width] = {};                         ///< where its light comes from, unit
+    float matt[width] = {}, peak[width] = {}, f0[width] = {}, alpha[width] = {};  ///< its Gloss
     uint32_t region[width] = {};
     uint32_t path[width] = {};
     int s[width] = {};
