@@ -138,10 +138,7 @@ void make_blocks(LightStore& store, const Near& near, bool in_order) {
   }
 }
 
-void apply_chances(const LightStore::Block& b, const Vertex& camera, Values& values) {
-  const uint32_t region = region_of(camera.guide);
-  if (region == no_region) return;
-  const Views& views = camera.guide.fields->views;
+void apply_chances(const LightStore::Block& b, const Views& views, uint32_t region, Values& values) {
   if (region >= views.regions) return;
   const uint8_t* chances = views.chance.data();
   std::array<uint32_t, LightStore::width> at;
@@ -212,7 +209,7 @@ void choose(const LightStore& store, const Vertex& camera, double inner, int mos
   const LightStore::Block& b = store.blocks[block];
   Values values;
   expect(b, seer_of(camera, near_of(camera, inner)), most, values);
-  apply_chances(b, camera, values);
+  if (camera.guide.fields) apply_chances(b, camera.guide.fields->views, region_of(camera.guide), values);
   const Sums sums = sums_of(values);
   const float sum = sums.back();
   if (!(sum > 0) || !(sum < infinity)) return;
@@ -226,16 +223,16 @@ void choose(const LightStore& store, const Vertex& camera, double inner, int mos
   }
 }
 
-void expect_all(const LightStore& store, const Vertex& camera, int most, const Visibility* visibility,
-                Expectation& out) {
+void expect_all(const LightStore& store, const Vertex& camera, int most, const Prospect& known, Expectation& out) {
   out.values.resize(store.blocks.size());
   out.sum = 0;
   const Seer seer = seer_of(camera, 0);
   for (size_t block = 0; block < store.blocks.size(); ++block) {
     Values& values = out.values[block];
     expect(store.blocks[block], seer, most, values);
-    if (visibility)
-      for (uint32_t i = 0; i < LightStore::width; ++i) values[i] *= visibility->blocks[block].chance[i];
+    if (known.views) apply_chances(store.blocks[block], *known.views, known.region, values);
+    if (known.tile)
+      for (uint32_t i = 0; i < LightStore::width; ++i) values[i] *= known.tile->blocks[block].chance[i];
     std::array<float, 8> part{};
     for (uint32_t i = 0; i < LightStore::width; ++i) part[i % 8] += values[i];
     out.sum += ((part[0] + part[1]) + (part[2] + part[3])) + ((part[4] + part[5]) + (part[6] + part[7]));

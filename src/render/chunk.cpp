@@ -91,7 +91,7 @@ void trace_light_halves(const Job& job, Film& film, uint32_t chunk, Scratch& scr
 }
 
 void trace_camera_halves(const Job& job, Film& film, Scratch& scratch) {
-  if (job.vpls) start(job.vpls->store, scratch.visibility);
+  if (job.vpls && !job.guided) start(job.vpls->store, scratch.visibility);
   for (auto& [sample, splat] : scratch.halves->samples)
     film.camera[sample.path] = trace_pixel(job, sample, splat, scratch);
 }

@@ -113,14 +113,22 @@ bool is_seen_from_lens(const Subpath& camera) {
   return true;
 }
 
+// Camera subpaths read no fields: the one thing that they need of them is asked for here.
+uint32_t region_at(const Fields& fields, const Vertex& x) {
+  const uint32_t cell = find(fields.table, x.p, glm::dot(x.ng, x.guide.wo) < 0 ? -x.ng : x.ng).cell;
+  return cell == none ? no_region : fields.cells[cell].region;
+}
+
 void join_vpls(Work& work) {
   const Job& job = work.job;
   Scratch& scratch = work.scratch;
   const Subpath& camera = scratch.camera;
   const LightStore& store = job.vpls->store;
   const Vertex& x = camera[camera.n - 1];
-  Visibility* const visibility = is_seen_from_lens(camera) ? &scratch.visibility : nullptr;
-  expect_all(store, x, job.walk.max_edges + 1 - camera.n, visibility, scratch.expected);
+  Visibility* const visibility = !job.guided && is_seen_from_lens(camera) ? &scratch.visibility : nullptr;
+  Prospect known{visibility};
+  if (job.guided) known.views = &job.walk.fields->views, known.region = region_at(*job.walk.fields, x);
+  expect_all(store, x, job.walk.max_edges + 1 - camera.n, known, scratch.expected);
   const int joins = camera.n > 2 ? job.vpls->inner_joins : job.vpls->joins;
   const uint32_t key = uint32_t(work.sample.sampler.next1() * 0x1p32f);
   choose_some(store, scratch.expected, joins, key, scratch.choices);

@@ -76,9 +76,15 @@ struct Expectation {
   std::vector<std::array<float, LightStore::width>> values;  ///< per block
   float sum = 0;
 };
-/// most: largest s. visibility: what is known of who is seen; null: nothing, all places count in full.
-void expect_all(const LightStore& store, const Vertex& camera, int most, const Visibility* visibility,
-                Expectation& out);
+/// What is known of which places a camera vertex sees: by what its tile saw of each in this pass, by the region that it
+/// is in, or nothing, where all places count in full.
+struct Prospect {
+  const Visibility* tile = nullptr;
+  const Views* views = nullptr;
+  uint32_t region = no_region;
+};
+/// most: largest s.
+void expect_all(const LightStore& store, const Vertex& camera, int most, const Prospect& known, Expectation& out);
 /// Draws about `count` places, each on its own (Poisson sampling), in proportion to what is expected of it and at most
 /// once. key: random bits. Whether a place is drawn depends on its chance and on a hash of key and light vertex alone:
 /// as lights move a little, nearly all choices stay.
