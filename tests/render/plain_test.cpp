@@ -161,11 +161,16 @@ void expect_same_image(const RenderState& a, const RenderState& b) {
   expect_same_learning(a.learning, b.learning);
 }
 
-RenderState resumed(const Scene& scene, const Accel& accel, const RenderOptions& options, const RenderState& state) {
+RenderState from_checkpoint(const Scene& scene, const RenderOptions& options, const RenderState& state) {
   const File file("plain");
   save_checkpoint(file.path, "key", state);
   RenderState again = start_render(scene, options);
   load_checkpoint(file.path, "key", again);
+  return again;
+}
+
+RenderState resumed(const Scene& scene, const Accel& accel, const RenderOptions& options, const RenderState& state) {
+  RenderState again = from_checkpoint(scene, options, state);
   render(scene, accel, options, again, {});
   return again;
 }
@@ -188,6 +193,25 @@ TEST(Plain, GivesBackWhatItDoesNotSee) {
   render(scene, accel, o, state, {});
   EXPECT_EQ(state.film.passes, 6u);
   expect_same_bytes(resumed(scene, accel, sparing("guided-bdpt", 12), state), straight);
+}
+
+// Also where it was kept for a while, and light is so easy to find that guiding would have taken fewer light subpaths.
+TEST(Plain, GivesBackWhatItDidNotSeeAtFirst) {
+  Scene scene = stage(64);
+  finish(scene);
+  const Accel accel(scene);
+  RenderState state = rendered(scene, accel, sparing("guided-bdpt", 4));
+  const RenderOptions o = sparing("guided-bdpt", 20);
+  RenderState doubted = from_checkpoint(scene, o, state);
+  add_caustic(state.film);
+  const RenderState guided = resumed(scene, accel, options_of("guided-bdpt", 20), state);
+  take_over(doubted);
+  doubted = resumed(scene, accel, sparing("guided-bdpt", 12), doubted);
+  ASSERT_TRUE(doubted.plain.taken);
+  add_caustic(doubted.plain.guided);
+  render(scene, accel, o, doubted, {});
+  EXPECT_EQ(doubted.plain.returned, 12u);
+  expect_same_image(doubted, guided);
 }
 
 // However many passes of path tracing say otherwise.
