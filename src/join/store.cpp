@@ -58,12 +58,12 @@ void expect(const LightStore::Block& b, const Seer& seer, int most, Values& out)
     float here = 1, there = 1;
     if constexpr (glossy) {
       const float between = -(wo.x * x + wo.y * y + wo.z * z) * per_d;
-      here = shine(g.matt, g.peak, g.f0, g.alpha, n_o, cos_c * per_d, between);
+      here = shine(g, n_o, cos_c * per_d, between);
     }
     if constexpr (glossy_light) {
       const float between = (b.wx[i] * x + b.wy[i] * y + b.wz[i] * z) * per_d;
       const float n_w = b.nx[i] * b.wx[i] + b.ny[i] * b.wy[i] + b.nz[i] * b.wz[i];
-      there = shine(b.matt[i], b.peak[i], b.f0[i], b.alpha[i], n_w, cos_a * per_d, between);
+      there = shine({b.matt[i], b.peak[i], b.f0[i], b.alpha[i]}, n_w, cos_a * per_d, between);
     }
     const float brings = b.flux[i] * geometry * here * there;
     out[i] = b.s[i] <= most ? brings / (1 + geometry * (b.near[i] * here + near * there)) : 0;  // (J1)

@@ -162,7 +162,7 @@ bool is_glossy(const Vertex& v) { return gloss_of(v.guide.bsdf, v.guide.wo_local
 double shine_of(const Vertex& v, const glm::dvec3& w) {
   const Gloss g = gloss_of(v.guide.bsdf, v.guide.wo_local);
   const Vec3 unit(glm::normalize(w)), n = v.guide.frame.n;
-  return shine(g.matt, g.peak, g.f0, g.alpha, glm::dot(n, v.guide.wo), glm::dot(n, unit), glm::dot(unit, v.guide.wo));
+  return shine(g, glm::dot(n, v.guide.wo), glm::dot(n, unit), glm::dot(unit, v.guide.wo));
 }
 
 // The probabilities that places ought to have, from the vertices themselves. (J1)

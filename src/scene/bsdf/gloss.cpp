@@ -7,7 +7,7 @@ namespace {
 
 float reflected_at_right_angles(float ior) { return sqr((ior - 1) / (ior + 1)); }
 float width_of(const Facets& f) { return std::sqrt(f.alpha_u * f.alpha_v); }
-float schlick(float f0, float cos) { return f0 + (1 - f0) * std::pow(1 - std::clamp(cos, 0.0f, 1.0f), 5.0f); }
+float schlick(float f0, float cos) { return f0 + (1 - f0) * schlick_weight(std::max(cos, 0.0f)); }
 
 // What a lobe of this albedo consists of, not yet relative to it.
 Gloss parts_of(const Lobe& lobe, float albedo, const Vec3& wo) {
@@ -27,7 +27,7 @@ Gloss parts_of(const Lobe& lobe, float albedo, const Vec3& wo) {
       const Principled& p = lobe.principled;
       if (p.spec_trans > 0) break;
       const float f0 = glm::mix(reflected_at_right_angles(p.eta), luminance(p.base), p.metallic);
-      return {std::max(albedo - schlick(f0, wo.z), 0.0f), 1, f0, std::max(sqr(p.roughness), min_alpha)};
+      return {std::max(albedo - schlick(f0, wo.z), 0.0f), 1, f0, width_of(facets(p))};
     }
     default:
       break;

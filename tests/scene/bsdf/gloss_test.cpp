@@ -8,9 +8,7 @@
 namespace ajar::test {
 namespace {
 
-float shine_of(const Gloss& g, const Vec3& wo, const Vec3& wi) {
-  return shine(g.matt, g.peak, g.f0, g.alpha, wo.z, wi.z, glm::dot(wo, wi));
-}
+float shine_of(const Gloss& g, const Vec3& wo, const Vec3& wi) { return shine(g, wo.z, wi.z, glm::dot(wo, wi)); }
 
 // A direction by the cosine or by the bsdf, in turns, and the density of that.
 bool draw(const Bsdf& bsdf, const Vec3& wo, int i, Vec3& wi, float& pdf) {

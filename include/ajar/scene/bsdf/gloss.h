@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "ajar/scene/bsdf.h"
+#include "ajar/scene/bsdf/fresnel.h"
 
 namespace ajar {
 
@@ -22,17 +23,16 @@ Gloss gloss_of(const Bsdf& bsdf, const Vec3& wo);
 
 /// About pi f / albedo, luminance, for directions with cosines n_o and n_i to the normal and `between` to each other;
 /// never less than a tenth, so that no choice rests on the lobe alone.
-inline float shine(float matt, float peak, float f0, float alpha, float n_o, float n_i, float between) {
+inline float shine(const Gloss& g, float n_o, float n_i, float between) {
   constexpr float least = 0.1f;
-  const float h2 = std::max(2 + 2 * between, 1e-6f), half = std::sqrt(h2), a2 = alpha * alpha;
+  const float h2 = std::max(2 + 2 * between, 1e-6f), half = std::sqrt(h2), a2 = g.alpha * g.alpha;
   const float n_h = std::min((n_o + n_i) / half, 1.0f), t = n_h * n_h * (a2 - 1) + 1;
-  const float away = std::max(1 - 0.5f * half, 0.0f), away2 = away * away;
-  const float fresnel = f0 + (1 - f0) * away2 * away2 * away;
+  const float fresnel = g.f0 + (1 - g.f0) * schlick_weight(0.5f * half);
   // What both sides see of the facets, over 4 cos cos (Hammon 2017).
-  const float seen = 0.5f / std::max(2 * n_o * n_i * (1 - alpha) + (n_o + n_i) * alpha, 1e-6f);
-  const float lobe = peak * fresnel * seen * a2 / std::max(t * t, 1e-14f);  // (J6)
+  const float seen = 0.5f / std::max(2 * n_o * n_i * (1 - g.alpha) + (n_o + n_i) * g.alpha, 1e-6f);
+  const float lobe = g.peak * fresnel * seen * a2 / std::max(t * t, 1e-14f);  // (J6)
   const float front = n_o > 0 && n_i > 0 ? 1.0f : 0.0f;
-  return std::max(matt + front * lobe, least);
+  return std::max(g.matt + front * lobe, least);
 }
 
 }  // namespace ajar
