@@ -3,6 +3,9 @@
 namespace ajar {
 namespace {
 
+// What a join of two walked vertices counts for, raised. (J7)
+double join_share(Heuristic h, const Shares& shares, bool seen) { return raise(h, seen ? shares.seen : shares.inner); }
+
 // v of (R2) for the strategy that connects the end's last vertex to the one before.
 double share_before(const End& end, double first, double inner) {
   return end.delta_before ? 0 : (end.n == 2 ? first : inner);
@@ -23,11 +26,13 @@ double handed_over(Heuristic h, const End& end, double first, double inner, doub
 
 double mis_weight(Heuristic h, const End& light, const End& camera, const Shares& shares) {
   const double nee = raise(h, shares.light_first), film = raise(h, shares.camera_first);
-  const double inner = raise(h, shares.inner);
   // Everything relative to the product of ordinary densities with s vertices from emission and t from the camera. (R1)
   const bool both_walked = light.n > 1 && camera.n > 1;
-  const double here = both_walked ? inner : (light.n == 1 ? nee : 1) * (camera.n == 1 ? film : 1);
-  double fewer_light = handed_over(h, light, nee, inner, camera.n == 1 ? 1 : shares.merge_inner);
+  const double here = both_walked ? join_share(h, shares, camera.seen) : (light.n == 1 ? nee : 1) * (camera.n == 1 ? film : 1);
+  // The light's last vertex becomes the camera's.
+  const bool seen = camera.n == 1;
+  const double fewer_light =
+      handed_over(h, light, nee, join_share(h, shares, seen), seen ? 1 : shares.merge_inner);
   // A strategy with t - 1 .. 1 camera vertices; s + 1 of light: next-event estimation where that is the first one.
   double fewer_camera;
   if (light.n == 0 && camera.n >= 2) {
@@ -36,7 +41,7 @@ double mis_weight(Heuristic h, const End& light, const End& camera, const Shares
     const double share = camera.delta_before ? 0 : (camera.n == 2 ? 0.0 : nee);
     fewer_camera = last * extend(share, raise(h, ratio(camera.other_before, camera.own_before)), camera.sum_before);
   } else {
-    fewer_camera = handed_over(h, camera, film, inner, 1);
+    fewer_camera = handed_over(h, camera, film, join_share(h, shares, camera.seen_before), 1);
   }
   return here / (here + fewer_light + fewer_camera);
 }
@@ -52,7 +57,7 @@ MergeSide merge_side(Heuristic h, const End& end, double back, const Shares& sha
   const double own = raise(h, ratio(1, end.own));
   const double first = raise(h, side == Side::light ? shares.light_first : shares.camera_first);
   const double before = std::min(raise(h, ratio(back, end.own_before)) * end.sum_before, largest_ratio * largest_ratio);
-  return {share_before(end, first, raise(h, shares.inner)) * own, before * own};
+  return {share_before(end, first, join_share(h, shares, end.seen_before)) * own, before * own};
 }
 
 double merge_weight(Heuristic h, double merge, const MergeSide& light, double light_reverse, const MergeSide& camera,

@@ -38,8 +38,11 @@ struct Seer {
   const Vertex* vertex;
   Gloss gloss;
   float near;
+  float near_lights = 1;  // factor on Block::near
 };
-Seer seer_of(const Vertex& v, float near) { return {&v, gloss_of(v.guide.bsdf, v.guide.wo_local), near}; }
+Seer seer_of(const Vertex& v, float near, float near_lights = 1) {
+  return {&v, gloss_of(v.guide.bsdf, v.guide.wo_local), near, near_lights};
+}
 
 // What joins bring, up to a factor that all of a camera vertex share: unoccluded, with the weight against the camera
 // subpath that finds the light vertex, or the light subpath that finds the camera's.
@@ -47,7 +50,7 @@ template <bool glossy, bool glossy_light>
 void expect(const LightStore::Block& b, const Seer& seer, int most, Values& out) {
   const Guide& guide = seer.vertex->guide;
   const Vec3 p = seer.vertex->p, n = guide.frame.n, wo = guide.wo;
-  const float behind = guide.bsdf.opaque ? 0.0f : -1.0f, n_o = guide.wo_local.z, near = seer.near;
+  const float behind = guide.bsdf.opaque ? 0.0f : -1.0f, n_o = guide.wo_local.z, near = seer.near, lights = seer.near_lights;
   const Gloss g = seer.gloss;
   for (uint32_t i = 0; i < LightStore::width; ++i) {
     const float x = p.x - b.x[i], y = p.y - b.y[i], z = p.z - b.z[i];
@@ -66,7 +69,7 @@ void expect(const LightStore::Block& b, const Seer& seer, int most, Values& out)
       there = shine({b.matt[i], b.peak[i], b.f0[i], b.alpha[i]}, n_w, cos_a * per_d, between);
     }
     const float brings = b.flux[i] * geometry * here * there;
-    out[i] = b.s[i] <= most ? brings / (1 + geometry * (b.near[i] * here + near * there)) : 0;  // (J1)
+    out[i] = b.s[i] <= most ? brings / (1 + geometry * (lights * b.near[i] * here + near * there)) : 0;  // (J1)
   }
 }
 
@@ -196,10 +199,10 @@ uint32_t find(const Sums& sums, const Values& values, float at) {
 
 // How many joins a camera vertex is worth that would bring so much of its pixel. What comes of a join rises with the
 // root of what was expected, since what seems to bring most is mostly hidden: measured.
-float joins_for(float brings) { return std::clamp(3 * std::sqrt(brings), 0.1f, 16.0f); }  // (J3)
+float joins_for(float brings, bool seen) { return std::clamp((seen ? 6 : 3) * std::sqrt(brings), 0.1f, 16.0f); }  // (J3)
 }  // namespace
 
-void choose(const LightStore& store, const Vertex& camera, double inner, int most, float worth, Sampler& sampler,
+void choose(const LightStore& store, const Vertex& camera, JoinShares shares, int most, float worth, Sampler& sampler,
             std::vector<StoreChoice>& out) {
   out.clear();
   const Vec2 u = sampler.next2();
@@ -208,13 +211,15 @@ void choose(const LightStore& store, const Vertex& camera, double inner, int mos
   const uint32_t block = std::min(uint32_t(u.x * float(n)), n - 1);
   const LightStore::Block& b = store.blocks[block];
   Values values;
-  expect(b, seer_of(camera, near_of(camera, inner)), most, values);
+  const double counts = camera.seen ? shares.seen : shares.inner;
+  const float near_lights = counts > 0 ? float(shares.inner / counts) : 1;
+  expect(b, seer_of(camera, near_of(camera, counts), near_lights), most, values);
   if (camera.guide.fields) apply_chances(b, camera.guide.fields->views, region_of(camera.guide), values);
   const Sums sums = sums_of(values);
   const float sum = sums.back();
   if (!(sum > 0) || !(sum < infinity)) return;
   const float share = float(double(n) / store.paths);
-  const float count = worth > 0 ? joins_for(worth * share * sum) : 1;
+  const float count = worth > 0 ? joins_for(worth * share * sum, camera.seen) : 1;
   for (float mark = u.y; mark < count; ++mark) {
     const uint32_t i = find(sums, values, mark / count * sum);
     if (!(values[i] > 0)) continue;

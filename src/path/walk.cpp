@@ -7,7 +7,8 @@ namespace {
 double share_of_last(const WalkOptions& options, const Subpath& subpath, const Walk& walk) {
   const int last = subpath.n - 1;
   if (subpath[last].delta || subpath[last - 1].delta) return 0;
-  return raise(options.heuristic, last == 1 ? walk.first_share : options.inner_share);
+  const double join = subpath[last - 1].seen ? options.seen_share : options.inner_share;
+  return raise(options.heuristic, last == 1 ? walk.first_share : join);
 }
 
 // S of the subpath's last vertex, now that its event is known.
@@ -38,7 +39,7 @@ void start_camera(const Scene& scene, const WalkOptions& options, const Vec2& ra
   subpath.n = 0;
   Vertex& v = subpath.add();
   v.p = ray.o, v.error = 0, v.ng = Vec3(0);
-  v.own = 1, v.sum = 0, v.delta = false, v.infinite = false;
+  v.own = 1, v.sum = 0, v.delta = false, v.infinite = false, v.seen = false;
   v.beta = Rgb(1);
   walk = Walk{};
   walk.o = ray.o, walk.d = ray.d, walk.t_min = ray.t_min, walk.t_max = ray.t_max;
@@ -61,7 +62,7 @@ bool start_light(const Scene& scene, const WalkOptions& options, Sampler& sample
   Vertex& v = subpath.add();
   v.p = point.p, v.error = point.error, v.ng = point.n;
   v.infinite = point.infinite;
-  v.delta = false;
+  v.delta = false, v.seen = false;
   v.own = point.infinite ? e.pdf_direction : e.pdf_position;
   v.sum = point.delta_position || point.delta_direction ? 0 : 1;
   v.beta = e.radiance / (point.infinite ? e.pdf_direction : e.pdf_position);
@@ -112,6 +113,7 @@ bool step(const Scene& scene, const Accel& accel, const WalkOptions& options, Su
     if (!walk.straight) v.merge *= float(options.merging.inner);
   }
   v.delta = false, v.infinite = false;
+  v.seen = walk.side == Side::camera && (subpath.n == 2 || (before.seen && before.delta));
   v.shines = 0, v.received = 0;
   v.shape = hit.shape, v.instance = hit.instance;
   if (subpath.n == 2 && walk.side == Side::camera) v.own = raster_factor(scene.camera, before.p, v.p) * cosine;

@@ -17,7 +17,7 @@ struct Work {
 };
 
 float weigh(const Work& work, Candidate& c) {
-  c.shares.inner = work.job.walk.inner_share;
+  c.shares.inner = work.job.walk.inner_share, c.shares.seen = work.job.walk.seen_share;
   c.shares.merge_inner = work.job.walk.merging.inner;
   if (!work.job.next_event) c.shares.light_first = 0;
   return float(weight(work.job.walk.heuristic, c));
@@ -194,7 +194,7 @@ void join_stored(Work& work, float worth) {
   const Subpath& camera = work.scratch.camera;
   const Vertex& v = camera[camera.n - 1];
   std::vector<StoreChoice>& choices = work.scratch.choices;
-  choose(store, v, job.walk.inner_share, job.walk.max_edges + 1 - camera.n, worth, work.sample.sampler, choices);
+  choose(store, v, {job.walk.inner_share, job.walk.seen_share}, job.walk.max_edges + 1 - camera.n, worth, work.sample.sampler, choices);
   for (const StoreChoice& choice : choices) {
     const LightStore::Place& at = *choice.place;
     Candidate c;

@@ -117,13 +117,17 @@ void add_merged(const Merged& sums, int t, const Rgb& factor, Sample& sample, Sc
   }
 }
 
+Shares shares_of(const WalkOptions& walk) {
+  Shares shares;
+  shares.camera_first = walk.light_paths, shares.inner = walk.inner_share, shares.seen = walk.seen_share;
+  return shares;
+}
+
 MergeSide camera_side(const Job& job, const Subpath& camera) {
   const int t = camera.n;
   const Vertex &v = camera[t - 1], &before = camera[t - 2];
-  Shares shares;
-  shares.camera_first = job.walk.light_paths, shares.inner = job.walk.inner_share;
-  const End end{t, v.own, 0, before.own, 0, before.delta, v.sum, v.merge};
-  return merge_side(job.walk.heuristic, end, v.back, shares, Side::camera);
+  const End end{t, v.own, 0, before.own, 0, before.delta, v.sum, v.merge, v.seen, before.seen};
+  return merge_side(job.walk.heuristic, end, v.back, shares_of(job.walk), Side::camera);
 }
 
 // What all light vertices within the radius would bring, were they in sight. Returns the luminance of their sum.
@@ -131,6 +135,7 @@ float find_near(const Job& job, const Subpath& camera, bool inner, float radius,
   const int t = camera.n, most = job.walk.max_edges + 2 - t;
   const Vertex& v = camera[t - 1];
   const MergeSide side = camera_side(job, camera);
+  const double factor = v.seen ? seen_factor(job.walk.heuristic, shares_of(job.walk)) : 1;
   float sum = 0;
   scratch.near.clear();
   for_each_near(job.photons[inner], v.p, radius, [&](const Photon& p) {
@@ -140,9 +145,9 @@ float find_near(const Job& job, const Subpath& camera, bool inner, float radius,
     const GuideEval e = evaluate(v.guide, p.wi, Mode::radiance);
     if (is_black(e.f_cos)) return;
     ++scratch.ledger->merge_at(p.s, t).joins;
-    const double w = job.merges_alone
-                         ? 1
-                         : merge_weight(job.walk.heuristic, v.merge, {p.fixed, p.slope}, e.pdf, side, e.pdf_reverse);
+    const MergeSide light{p.s > 2 ? p.fixed * factor : p.fixed, p.slope};
+    const double w =
+        job.merges_alone ? 1 : merge_weight(job.walk.heuristic, v.merge, light, e.pdf, side, e.pdf_reverse);
     scratch.near.push_back({&p, e.f_cos * p.beta / cosine, float(w)});  // (K1)
     sum += luminance(scratch.near.back().found) * float(w);
   });

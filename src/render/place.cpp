@@ -25,7 +25,7 @@ void join_lens(const Job& job, Sampler& sampler, double share, Scratch& scratch,
   if (!join_camera(*job.scene, lens, light, light.n, share, job.walk.light_paths, c)) return;
   ++scratch.counters.shadow_rays;
   if (!visible(*job.accel, c.segment)) return;
-  c.shares.inner = 0;
+  c.shares.inner = c.shares.seen = 0;
   // The film takes as many light subpaths as it has pixels.
   const double pixels = double(camera.crop_width) * camera.crop_height;
   c.value *= float(weight(job.walk.heuristic, c) * pixels / job.walk.light_paths);

@@ -188,7 +188,7 @@ PlainLook compare_halves(const PassHalves& guided, const PassHalves& plain) {
 Job plainly(Job job) {
   job.trace = trace_path, job.light_half = nullptr;
   job.guided = false, job.learning = nullptr, job.training = nullptr;
-  job.walk.fields = nullptr, job.walk.merging = {}, job.walk.inner_share = 0;
+  job.walk.fields = nullptr, job.walk.merging = {}, job.walk.inner_share = job.walk.seen_share = 0;
   return job;
 }
 

@@ -162,6 +162,9 @@ void set_light_paths(bool joined, RenderState& state, Job& job) {
 
 // What joins of a guided vertex count for in the weights: about as many are made of each, where it matters (J3).
 constexpr double guided_joins = 2;
+// Those at vertices that the lens sees (J7). Beyond, all that a camera subpath finds hangs on the one walk that came
+// there, so that many joins tell hardly more than one; measured (results.md).
+constexpr double seen_joins = 16;
 
 // What merges beyond the first vertex at which a camera subpath is merged count for (K3). They share the walk that
 // found it, so that many of them tell hardly more than one; measured (results.md).
@@ -201,7 +204,7 @@ void note_rejected(RenderStats& stats, const std::vector<uint64_t>& pixels, cons
 Job with_vpls(Job job, const Film& film, std::vector<Scratch>& scratches, Vpls& vpls) {
   job.vpls = &vpls;
   job.light_half = nullptr;
-  job.walk.light_paths = vpls.paths, job.walk.inner_share = 0;  // the other weights are of s = 0, s = 1 and t = 1 alone
+  job.walk.light_paths = vpls.paths, job.walk.inner_share = job.walk.seen_share = 0;  // the other weights are of s = 0, s = 1 and t = 1 alone
   vpls.camera = job.walk;
   vpls.camera.fields = nullptr;
   const uint32_t pass = film.dropped + film.passes;
@@ -309,6 +312,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   if (is_guided(options.integrator)) {
     job.guided = true;
     job.walk.inner_share = film.splats ? guided_joins : 0;
+    job.walk.seen_share = film.splats ? (integrator.light_half ? seen_joins : guided_joins) : 0;
   }
   const bool leaving_out = may_leave_out(options);
   double wall0 = 0, cpu0 = 0;

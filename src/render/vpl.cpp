@@ -34,7 +34,7 @@ bool is_caustic(const Subpath& camera, int n) {
 // Of hits and next-event estimation among each other, and of what only light subpaths can aim at: nothing else finds
 // what they find.
 float weigh(const Work& work, Candidate& c) {
-  c.shares.inner = 0;
+  c.shares.inner = c.shares.seen = 0;
   if (!is_caustic(work.scratch.camera, c.camera.n)) c.camera.sum_before = 0;
   return float(weight(work.job.walk.heuristic, c));
 }
@@ -42,7 +42,7 @@ float weigh(const Work& work, Candidate& c) {
 // The same of a path that is joined further up: what is left to all that joins and walks share.
 float share_of_camera(const Work& work, Candidate& c) {
   if (!is_caustic(work.scratch.camera, c.camera.n)) return 1;
-  c.shares.inner = 0;
+  c.shares.inner = c.shares.seen = 0;
   return float(mis_of_camera(work.job.walk.heuristic, c.light, c.camera, c.shares));  // (I3)
 }
 

@@ -20,7 +20,7 @@ using kit::OracleVertex;
 // One side's view of a path: a_0 is its own end; what a walk of all its vertices would store.
 struct SideView {
   std::vector<double> own, other;
-  std::vector<bool> delta;
+  std::vector<bool> delta, seen;
   std::vector<double> merge;
   std::vector<double> sums;  // S_i
 };
@@ -37,6 +37,7 @@ SideView view(const OraclePath& path, Side side, Heuristic h) {
     v.other.push_back(side == Side::light ? camera : light);
     v.delta.push_back(x.delta);
     straight = straight && (i < 2 || path.vertices[n - i].delta);
+    v.seen.push_back(side == Side::camera && i > 0 && straight);
     const bool inside = i > 0 && i < n - 1;
     v.merge.push_back(inside ? double(x.merge * (side == Side::light || straight ? 1 : path.merge_inner)) : 0);
   }
@@ -44,7 +45,8 @@ SideView view(const OraclePath& path, Side side, Heuristic h) {
   const double first = light ? double(path.nee / path.vertices[0].light) : double(path.light_paths);
   v.sums.push_back(light && path.hittable ? 1 : 0);
   for (size_t i = 1; i < n; ++i) {
-    double share = v.delta[i] || v.delta[i - 1] ? 0 : raise(h, i == 1 ? first : double(path.inner));
+    const double join = double(v.seen[i - 1] ? path.seen : path.inner);
+    double share = v.delta[i] || v.delta[i - 1] ? 0 : raise(h, i == 1 ? first : join);
     if (!v.delta[i]) share += merge_at(h, v.own[i], v.merge[i] * (light ? double(path.merge_inner) : 1));
     v.sums.push_back(extend(share, raise(h, ratio(v.other[i - 1], v.own[i - 1])), v.sums[i - 1]));
   }
@@ -55,7 +57,8 @@ End end_of(const SideView& v, int n) {
   if (n == 0) return {};
   const auto i = size_t(n - 1);
   if (n == 1) return {1, v.own[0], v.other[0], 1, 0, false, v.sums[0]};
-  return {n, v.own[i], v.other[i], v.own[i - 1], v.other[i - 1], v.delta[i - 1], v.sums[i - 1], v.merge[i]};
+  return {n, v.own[i], v.other[i], v.own[i - 1], v.other[i - 1], v.delta[i - 1], v.sums[i - 1], v.merge[i], v.seen[i],
+          v.seen[i - 1]};
 }
 
 // Weights of all strategies by the fast way, 0 for those that cannot make the path.
@@ -64,7 +67,7 @@ std::vector<double> fast_weights(const OraclePath& path, Heuristic h) {
   const SideView light = view(path, Side::light, h), camera = view(path, Side::camera, h);
   const auto possible = kit::densities(path);
   const Shares shares{double(path.nee / path.vertices[0].light), double(path.light_paths), double(path.inner),
-                      double(path.merge_inner)};
+                      double(path.seen), double(path.merge_inner)};
   std::vector<double> out(2 * size_t(n), 0.0);
   for (int s = 0; s < n; ++s)
     if (possible[size_t(s)] > 0) out[size_t(s)] = mis_weight(h, end_of(light, s), end_of(camera, n - s), shares);
@@ -72,7 +75,9 @@ std::vector<double> fast_weights(const OraclePath& path, Heuristic h) {
     if (!(possible[size_t(n + j)] > 0)) continue;
     // The densities of the vertices before come last, once both directions at the merge are known.
     End l = end_of(light, j + 1), c = end_of(camera, n - j);
-    const MergeSide a = merge_side(h, l, 1, shares, Side::light), b = merge_side(h, c, 1, shares, Side::camera);
+    MergeSide a = merge_side(h, l, 1, shares, Side::light);
+    const MergeSide b = merge_side(h, c, 1, shares, Side::camera);
+    if (l.n > 2 && c.seen) a.fixed *= seen_factor(h, shares);
     out[size_t(n + j)] = merge_weight(h, c.merge, a, l.other_before, b, c.other_before);
   }
   return out;
@@ -94,6 +99,7 @@ struct Maker {
     p.nee = p.hittable ? static_cast<long double>(density()) : p.vertices[0].light;
     p.light_paths = uniform() < 0.5 ? 1 : std::floor(1 + 1e6 * uniform());
     p.inner = uniform() < 0.5 ? 1 : 2 * uniform();
+    p.seen = uniform() < 0.5 ? p.inner : static_cast<long double>(20 * uniform());
     p.merge_inner = uniform() < 0.3 ? 0 : uniform();
     if (uniform() < 0.5)
       for (OracleVertex& x : p.vertices) x.merge = density();

@@ -23,7 +23,7 @@ int expect_unbiased(const LightStore& store, const std::vector<Subpath>& cameras
     Sampler sampler = draws(k);
     double sum = 0, squares = 0;
     for (int i = 0; i < n; ++i) {
-      choose(store, end_of(cameras[k]), 1, most, worth, sampler, choices);
+      choose(store, end_of(cameras[k]), {}, most, worth, sampler, choices);
       double x = 0;
       for (const StoreChoice& choice : choices) {
         EXPECT_TRUE(choice.weight > 0 && choice.weight < infinity);
@@ -109,9 +109,9 @@ TEST(LightStore, StandsForAllPlacesHoweverManyAreJoined) {
     size_t joins = 0, vertices = 0;
     for (const Subpath& camera : room.cameras(6))
       for (int i = 0; i < 1000; ++i) {
-        choose(store, end_of(camera), 1, most_edges, 0, sampler, choices);
+        choose(store, end_of(camera), {}, most_edges, 0, sampler, choices);
         vertices += choices.size();
-        choose(store, end_of(camera), 1, most_edges, worth, sampler, choices);
+        choose(store, end_of(camera), {}, most_edges, worth, sampler, choices);
         joins += choices.size();
       }
     const double mean = double(joins) / double(vertices);
@@ -142,7 +142,7 @@ TEST(LightStore, StandsForPlacesOfShortSubpathsAlone) {
   std::vector<StoreChoice> choices;
   for (const Subpath& camera : room.cameras(12))
     for (int i = 0; i < 200; ++i) {
-      choose(store, end_of(camera), 1, 2, 0, sampler, choices);
+      choose(store, end_of(camera), {}, 2, 0, sampler, choices);
       for (const StoreChoice& choice : choices) ASSERT_EQ(choice.place->s, 2);
     }
 }
@@ -202,7 +202,7 @@ TEST(LightStore, ChoosesByWhatPlacesWouldBring) {
     std::vector<double> drawn(p.size());
     Sampler sampler = draws(100 + k);
     for (int i = 0; i < n; ++i) {
-      choose(store, end_of(cameras[k]), 1, most_edges, 0, sampler, choices);
+      choose(store, end_of(cameras[k]), {}, most_edges, 0, sampler, choices);
       ASSERT_LE(choices.size(), 1u);
       for (const StoreChoice& choice : choices) drawn[index_of(store, choice)] += 1;
     }
@@ -236,7 +236,7 @@ TEST(LightStore, NothingIsChosenFromNothing) {
   std::vector<StoreChoice> choices;
   const auto chooses = [&](const LightStore& store, const Vertex& c, int most, Sampler& sampler) {
     choices.resize(3);  // of the vertex before
-    choose(store, c, 1, most, 1e9f, sampler, choices);
+    choose(store, c, {}, most, 1e9f, sampler, choices);
     return !choices.empty();
   };
   for (const Subpath& camera : room.cameras(20)) {
@@ -259,7 +259,7 @@ TEST(LightStore, NothingBehindIsChosen) {
     Sampler sampler = draws(2);
     std::vector<StoreChoice> choices;
     for (int i = 0; i < 1000; ++i) {
-      choose(store, c, 1, most_edges, 0, sampler, choices);
+      choose(store, c, {}, most_edges, 0, sampler, choices);
       for (const StoreChoice& choice : choices) {
         const Vertex& a = store.subpath(*choice.place).back();
         ASSERT_TRUE(may_scatter(c.guide, a.p - c.p));

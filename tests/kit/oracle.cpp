@@ -13,7 +13,9 @@ std::vector<long double> densities(const OraclePath& path) {
     const size_t t = n - s;
     const bool joined_at_delta = s > 0 && (x[s - 1].delta || x[s].delta);
     if (joined_at_delta || (s == 0 && !path.hittable) || (s == 1 && t == 1)) continue;
-    long double product = t == 1 ? path.light_paths : s >= 2 ? path.inner : 1;
+    bool seen = true;
+    for (size_t i = s + 1; i + 1 < n; ++i) seen = seen && x[i].delta;
+    long double product = t == 1 ? path.light_paths : s >= 2 ? (seen ? path.seen : path.inner) : 1;
     for (size_t i = 0; i < s; ++i) product *= i == 0 && s == 1 ? path.nee : x[i].light;
     for (size_t i = s; i < n; ++i) product *= i == n - 1 ? 1 : x[i].camera;
     out[s] = product;

@@ -20,6 +20,7 @@ struct OraclePath {
   long double nee = 1;          ///< density of next-event estimation for x_0, in the measure of vertices[0].light
   long double light_paths = 1;  ///< light subpaths for each camera sample
   long double inner = 1;        ///< factor on the density of joins of two walked vertices
+  long double seen = 1;         ///< the same where all between the camera's vertex and the lens are deltas
   long double merge_inner = 1;  ///< and of merges, but where all between the vertex and the lens are deltas
 };
 

@@ -66,18 +66,20 @@ struct Tally {
   const Fields* fields = nullptr;
   double light_paths = 333;
   Merging merging;
+  double seen = 1;
   int compared[ways] = {}, off[ways] = {};
   double worst[ways] = {};
 
   void compare(const Scene& scene, Candidate& c, const WholePath& path, int s) {
-    c.shares.merge_inner = merging.inner;
+    c.shares.merge_inner = merging.inner, c.shares.seen = seen;
     compare(scene, weight(heuristic, c), path, size_t(s), way_of(s, int(path.points.size()) - s));
   }
 
   // which: of the oracle's strategies.
   void compare(const Scene& scene, double fast, WholePath path, size_t which, Way kind) {
     path.fields = fields;
-    const OraclePath slow = densities_afresh(scene, path, light_paths, merging);
+    OraclePath slow = densities_afresh(scene, path, light_paths, merging);
+    slow.seen = seen;
     const double right = double(weights(slow, heuristic == Heuristic::power ? 2 : 1)[which]);
     // Relative, or absolute where the weight hardly counts: float rounding in long chains of densities.
     const double error = std::abs(fast - right) / std::max(right, 1e-4);
@@ -155,9 +157,12 @@ void compare_merges(const Tracer& tracer, const Traced& light, const Traced& cam
       const Photon& p = photons.back();
       const GuideEval e = evaluate(c.guide, p.wi, Mode::radiance);
       if (is_black(e.f_cos)) continue;
-      const MergeSide side = merge_side(h, {t, c.own, 0, before.own, 0, before.delta, c.sum, c.merge}, c.back,
-                                        {1, tally.light_paths}, Side::camera);
-      const double fast = merge_weight(h, c.merge, {p.fixed, p.slope}, e.pdf, side, e.pdf_reverse);
+      Shares shares{1, tally.light_paths};
+      shares.seen = tally.seen;
+      const End end{t, c.own, 0, before.own, 0, before.delta, c.sum, c.merge, c.seen, before.seen};
+      const MergeSide side = merge_side(h, end, c.back, shares, Side::camera);
+      const MergeSide lit{c.seen ? p.fixed * seen_factor(h, shares) : p.fixed, p.slope};
+      const double fast = merge_weight(h, c.merge, lit, e.pdf, side, e.pdf_reverse);
       const WholePath path = joined(there, s - 1, camera, t);
       WholePath smooth = path;
       smooth.points[size_t(s - 1)].delta = false;
@@ -211,6 +216,7 @@ struct Case {
   Heuristic heuristic = Heuristic::power;
   const Fields* fields = nullptr;
   Merging merging = {};
+  double seen = 1;
 };
 
 void expect_oracle(const Scene& scene, int paths, const Case& which) {
@@ -222,6 +228,7 @@ void expect_oracle(const Scene& scene, int paths, const Case& which) {
   tracer.options.fields = which.fields;
   tracer.options.light_paths = tally.light_paths;
   tracer.options.merging = tally.merging = which.merging;
+  tracer.options.seen_share = tally.seen = which.seen;
   int compared = 0, vertices = 0, guided = 0;
   for (int i = 0; i < paths; ++i) {
     Sampler c = make_sampler(SamplerKind::independent, 1, Side::camera, uint64_t(i), 0);
@@ -253,9 +260,9 @@ void expect_oracle(const Scene& scene, int paths = 3000) {
     SCOPED_TRACE(heuristic == Heuristic::balance ? "balance" : "power");
     expect_oracle(scene, paths, {heuristic, nullptr});
     SCOPED_TRACE("guided");
-    expect_oracle(scene, paths / 2, {heuristic, &fields});
+    expect_oracle(scene, paths / 2, {heuristic, &fields, {}, 8});
     SCOPED_TRACE("merging");
-    expect_oracle(scene, paths / 3, {heuristic, &fields, {500, {0, 0, 4}, 0.01f, 0, 1, 0.3}});
+    expect_oracle(scene, paths / 3, {heuristic, &fields, {500, {0, 0, 4}, 0.01f, 0, 1, 0.3}, 8});
   }
 }
 

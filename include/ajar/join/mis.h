@@ -18,6 +18,7 @@ struct End {
   bool delta_before = false;                ///< the event at a_(n-2) is a delta
   double sum_before = 0;                    ///< S_(n-2), see extend
   double merge = 0;                         ///< what own is multiplied by for a merge at a_(n-1); 0: none there
+  bool seen = false, seen_before = false;  ///< all events between a_(n-1), or a_(n-2), and the lens are deltas; camera
 };
 
 /// The strategy with one vertex on this side draws its end afresh (next-event estimation), or comes more often (one
@@ -26,6 +27,7 @@ struct Shares {
   double light_first = 1;   ///< density of next-event estimation over that of emission for a_0
   double camera_first = 1;  ///< number of light paths that one camera sample's film sees: light paths of a pass
   double inner = 1;  ///< what a join of two vertices that both were walked to counts for, as a factor on its density
+  double seen = 1;   ///< the same where the lens sees the camera's vertex, itself or by way of deltas
   double merge_inner = 1;  ///< what merges beyond the first vertex that the camera sees count for
 };
 
@@ -46,6 +48,11 @@ struct MergeSide {
 /// The side whose last vertex is at the merge. other and other_before of the end are not read; back turns the density
 /// per solid angle of going back into the area density of the vertex before. (K6)
 MergeSide merge_side(Heuristic h, const End& end, double back, const Shares& shares, Side side);
+/// What `fixed` of a light side of more than two vertices, made for a camera's vertex that the lens does not see, is to
+/// be multiplied by where it does: one of the other strategies joins at it.
+inline double seen_factor(Heuristic h, const Shares& shares) {
+  return shares.inner > 0 ? raise(h, shares.seen / shares.inner) : 1;
+}
 /// Weight of the merge; reverse: densities per solid angle of going on to the vertex before on each side. merge is
 /// pi r^2 N times its share.
 double merge_weight(Heuristic h, double merge, const MergeSide& light, double light_reverse, const MergeSide& camera,

@@ -45,6 +45,11 @@ struct LightStore {
   std::span<const Vertex> subpath(const Place& at) const { return {vertices.data() + at.first, size_t(at.s)}; }
 };
 
+/// As in WalkOptions: what joins count for in the weights, and those at vertices that the lens sees.
+struct JoinShares {
+  double inner = 1, seen = 1;
+};
+
 struct StoreChoice {
   const LightStore::Place* place = nullptr;
   float weight = 0;  ///< with which the join counts: its sum over all places, over light subpaths
@@ -67,7 +72,7 @@ void append(LightStore& store, const LightStore& more);
 /// seen (resampling: Talbot et al. 2005), evenly spaced over their sums. worth: what the camera vertex makes of what is
 /// brought, relative to what its pixel is expected to be; the more, the more are drawn, in the mean a tenth to 16 (J3).
 /// 0, where that is not known: one. most: largest s. Takes one pair of numbers.
-void choose(const LightStore& store, const Vertex& camera, double inner, int most, float worth, Sampler& sampler,
+void choose(const LightStore& store, const Vertex& camera, JoinShares shares, int most, float worth, Sampler& sampler,
             std::vector<StoreChoice>& out);
 
 struct Visibility;

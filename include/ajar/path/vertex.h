@@ -22,6 +22,7 @@ struct Vertex {
   double sum = 0;   ///< S of the vertex *before* this one, mis.h (R3)
   float merge = 0;  ///< merge_density here (walk.h), on the camera's side times what the merge counts for
   bool delta = false;     ///< the subpath went on from here by a delta event
+  bool seen = false;      ///< by the lens, itself or by way of delta events; camera subpaths
   bool infinite = false;  ///< vertex 0: a direction rather than a place
   float received =
       0;             ///< luminance of what next-event estimation (the lens) brought here, per area; for Rule::returned

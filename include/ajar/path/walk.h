@@ -50,8 +50,9 @@ struct WalkOptions {
   int sure_vertices = 64;          ///< beyond, no subpath is sure to go on
   const Fields* fields = nullptr;  ///< guide the subpaths; null: unguided
   double inner_share = 1;          ///< Shares::inner of all joins (join/mis.h)
+  double seen_share = 1;           ///< Shares::seen
   double light_paths = 1;          ///< light subpaths that splat to the film, for each camera sample of a pixel; with
-                                   ///< 0, and an inner share of 0, weights are of s = 0 and s = 1 alone
+                                   ///< 0, and other shares of 0, weights are of s = 0 and s = 1 alone
   Merging merging;
 };
 
