@@ -28,11 +28,11 @@ double mis_weight(Heuristic h, const End& light, const End& camera, const Shares
   const double nee = raise(h, shares.light_first), film = raise(h, shares.camera_first);
   // Everything relative to the product of ordinary densities with s vertices from emission and t from the camera. (R1)
   const bool both_walked = light.n > 1 && camera.n > 1;
-  const double here = both_walked ? join_share(h, shares, camera.seen) : (light.n == 1 ? nee : 1) * (camera.n == 1 ? film : 1);
+  const double here =
+      both_walked ? join_share(h, shares, camera.seen) : (light.n == 1 ? nee : 1) * (camera.n == 1 ? film : 1);
   // The light's last vertex becomes the camera's.
   const bool seen = camera.n == 1;
-  const double fewer_light =
-      handed_over(h, light, nee, join_share(h, shares, seen), seen ? 1 : shares.merge_inner);
+  const double fewer_light = handed_over(h, light, nee, join_share(h, shares, seen), seen ? 1 : shares.merge_inner);
   // A strategy with t - 1 .. 1 camera vertices; s + 1 of light: next-event estimation where that is the first one.
   double fewer_camera;
   if (light.n == 0 && camera.n >= 2) {

@@ -50,7 +50,8 @@ template <bool glossy, bool glossy_light>
 void expect(const LightStore::Block& b, const Seer& seer, int most, Values& out) {
   const Guide& guide = seer.vertex->guide;
   const Vec3 p = seer.vertex->p, n = guide.frame.n, wo = guide.wo;
-  const float behind = guide.bsdf.opaque ? 0.0f : -1.0f, n_o = guide.wo_local.z, near = seer.near, lights = seer.near_lights;
+  const float behind = guide.bsdf.opaque ? 0.0f : -1.0f, n_o = guide.wo_local.z, near = seer.near,
+              lights = seer.near_lights;
   const Gloss g = seer.gloss;
   for (uint32_t i = 0; i < LightStore::width; ++i) {
     const float x = p.x - b.x[i], y = p.y - b.y[i], z = p.z - b.z[i];
@@ -199,7 +200,9 @@ uint32_t find(const Sums& sums, const Values& values, float at) {
 
 // How many joins a camera vertex is worth that would bring so much of its pixel. What comes of a join rises with the
 // root of what was expected, since what seems to bring most is mostly hidden: measured.
-float joins_for(float brings, bool seen) { return std::clamp((seen ? 6 : 3) * std::sqrt(brings), 0.1f, 16.0f); }  // (J3)
+float joins_for(float brings, bool seen) {
+  return std::clamp((seen ? 6 : 3) * std::sqrt(brings), 0.1f, 16.0f);
+}  // (J3)
 }  // namespace
 
 void choose(const LightStore& store, const Vertex& camera, JoinShares shares, int most, float worth, Sampler& sampler,

@@ -194,7 +194,8 @@ void join_stored(Work& work, float worth) {
   const Subpath& camera = work.scratch.camera;
   const Vertex& v = camera[camera.n - 1];
   std::vector<StoreChoice>& choices = work.scratch.choices;
-  choose(store, v, {job.walk.inner_share, job.walk.seen_share}, job.walk.max_edges + 1 - camera.n, worth, work.sample.sampler, choices);
+  choose(store, v, {job.walk.inner_share, job.walk.seen_share}, job.walk.max_edges + 1 - camera.n, worth,
+         work.sample.sampler, choices);
   for (const StoreChoice& choice : choices) {
     const LightStore::Place& at = *choice.place;
     Candidate c;

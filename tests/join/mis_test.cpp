@@ -57,8 +57,8 @@ End end_of(const SideView& v, int n) {
   if (n == 0) return {};
   const auto i = size_t(n - 1);
   if (n == 1) return {1, v.own[0], v.other[0], 1, 0, false, v.sums[0]};
-  return {n, v.own[i], v.other[i], v.own[i - 1], v.other[i - 1], v.delta[i - 1], v.sums[i - 1], v.merge[i], v.seen[i],
-          v.seen[i - 1]};
+  return {n,          v.own[i],  v.other[i],   v.own[i - 1], v.other[i - 1], v.delta[i - 1], v.sums[i - 1],
+          v.merge[i], v.seen[i], v.seen[i - 1]};
 }
 
 // Weights of all strategies by the fast way, 0 for those that cannot make the path.

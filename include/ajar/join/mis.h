@@ -18,7 +18,7 @@ struct End {
   bool delta_before = false;                ///< the event at a_(n-2) is a delta
   double sum_before = 0;                    ///< S_(n-2), see extend
   double merge = 0;                         ///< what own is multiplied by for a merge at a_(n-1); 0: none there
-  bool seen = false, seen_before = false;  ///< all events between a_(n-1), or a_(n-2), and the lens are deltas; camera
+  bool seen = false, seen_before = false;   ///< all events between a_(n-1), or a_(n-2), and the lens are deltas; camera
 };
 
 /// The strategy with one vertex on this side draws its end afresh (next-event estimation), or comes more often (one
