@@ -8,8 +8,8 @@ namespace {
 End end_at(std::span<const Vertex> subpath, double other, double reverse) {
   const Vertex& v = subpath.back();
   const Vertex& before = subpath[subpath.size() - 2];
-  return {int(subpath.size()), v.own, other,   before.own, reverse * v.back,
-          before.delta,        v.sum, v.merge, v.seen,     before.seen};
+  const bool delta = before.delta;
+  return {int(subpath.size()), v.own, other, before.own, reverse * v.back, delta, v.sum, v.merge, v.seen, before.seen};
 }
 
 }  // namespace
