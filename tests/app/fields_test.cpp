@@ -91,7 +91,7 @@ TEST_F(FieldsUsed, AreRecorded) {
 
 TEST_F(FieldsUsed, LoadedFieldsSpareTheYoungPasses) {
   const auto first = render({"--spp", "9", "--save-fields", fields});
-  const auto second = render({"--spp", "16", "--load-fields", fields});
+  const auto second = render({"--spp", "16", "--load-fields", fields, "--plan", "all"});
   EXPECT_EQ(second["spp"], 16);
   EXPECT_EQ(second["options"]["load_fields"], fields);
   EXPECT_EQ(second["fields"]["dropped_passes"], 0);
