@@ -24,7 +24,8 @@ constexpr double far_better = 0.7, better = 1.2;
 // It is not looked at again: after so many passes, or at once.
 constexpr double worse = 1.6, much_worse = 2;
 constexpr uint32_t settling = 16;
-// Factor on the error of what merges: blur within squares is not seen. By errors against references (results.md).
+// Factor on the error of what merges: blur within squares is not seen. By errors against references
+// (docs/results/plan.md).
 constexpr double blur = 1.5;
 // relMSE of a sample. Above, samples are so uneven that a few thousand pixels do not tell their error, and path tracing
 // is not what the scene needs.

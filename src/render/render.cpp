@@ -163,11 +163,11 @@ void set_light_paths(bool joined, RenderState& state, Job& job) {
 // What joins of a guided vertex count for in the weights: about as many are made of each, where it matters (J3).
 constexpr double guided_joins = 2;
 // Those at vertices that the lens sees (J7). Beyond, all that a camera subpath finds hangs on the one walk that came
-// there, so that many joins tell hardly more than one; measured (results.md).
+// there, so that many joins tell hardly more than one; measured (docs/results/joins.md).
 constexpr double seen_joins = 16;
 
 // What merges beyond the first vertex at which a camera subpath is merged count for (K3). They share the walk that
-// found it, so that many of them tell hardly more than one; measured (results.md).
+// found it, so that many of them tell hardly more than one; measured (docs/results/merging.md).
 constexpr double merge_inner = 0.01;
 
 // Largest radius, of the scene's: what is far from the eye must not be merged across rooms.

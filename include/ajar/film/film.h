@@ -68,8 +68,8 @@ void finish_pass(Film& film);
 Picture develop(const Film& film);
 /// Variance of the estimate per pixel and channel, from the spread of the passes; zero before the second pass. Exact in
 /// expectation for independent numbers. Passes of a low-discrepancy sequence err less together than apart, so there it
-/// is too large (1.1 to 2 times measured in easy scenes, docs/results.md), and tests that read it milder. The halves
-/// below would be exact for both, but with a single degree of freedom per pixel no test could stand on them.
+/// is too large (1.1 to 2 times measured in easy scenes, docs/results/error.md), and tests that read it milder. The
+/// halves below would be exact for both, but with a single degree of freedom per pixel no test could stand on them.
 Picture variance(const Film& film);
 
 /// What is expected of `ajar compare` against the true image; infinite before the second pass, and as long as nothing

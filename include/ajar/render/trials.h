@@ -30,8 +30,9 @@ struct Judgement {
 /// Of two sights or more: each is held against the others.
 std::vector<Judgement> judge(const std::vector<Sight>& sights);
 
-/// CPU time of a ray with all that hangs on it [us], about: benchmarks/ray_cost.sh (results.md). Costs are reckoned
-/// from it, so that what is decided does not depend on the clock. For path, bdpt, and guided integrators of images.
+/// CPU time of a ray with all that hangs on it [us], about: benchmarks/ray_cost.sh (docs/results/plan.md). Costs are
+/// reckoned from it, so that what is decided does not depend on the clock. For path, bdpt, and guided integrators of
+/// images.
 double ray_cost(const std::string& integrator);
 
 }  // namespace ajar
