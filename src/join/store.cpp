@@ -11,7 +11,7 @@ using Values = std::array<float, LightStore::width>;
 namespace {
 
 // 1 / own density, in units of the density with which a cosine lobe at the other end would find the vertex.
-float near_of(const Vertex& v, double inner) { return float(inv_pi / std::max(inner * v.own, 1e-30)); }
+double near_of(const Vertex& v) { return inv_pi / std::max(v.own, 1e-30); }
 
 // Luminance that a vertex scatters, never nothing: narrow lobes are more than their albedo on average.
 float flux_of(const Vertex& v) {
@@ -40,8 +40,13 @@ struct Seer {
   float near;
   float near_lights = 1;  // factor on Block::near
 };
-Seer seer_of(const Vertex& v, float near, float near_lights = 1) {
+Seer seer_of(const Vertex& v, float near = 0, float near_lights = 1) {
   return {&v, gloss_of(v.guide.bsdf, v.guide.wo_local), near, near_lights};
+}
+Seer seer_of(const Joiner& j) {
+  constexpr double most = 1e30;
+  const double counts = std::max(j.counts, 1e-30), near = j.before / counts * near_of(*j.vertex);
+  return seer_of(*j.vertex, float(std::min(near, most)), float(std::min(j.onwards / counts, most)));
 }
 
 // What joins bring, up to a factor that all of a camera vertex share: unoccluded, with the weight against the camera
@@ -90,7 +95,7 @@ void expect(const LightStore::Block& b, const Seer& seer, int most, Values& out)
 
 void clear(LightStore& store) { store.vertices.clear(), store.places.clear(), store.blocks.clear(), store.paths = 0; }
 
-void add(LightStore& store, const Subpath& light, double share, float counts) {
+void add(LightStore& store, const Subpath& light, double share) {
   ++store.paths;
   const uint32_t first = uint32_t(store.vertices.size());
   int last = 0;
@@ -100,31 +105,10 @@ void add(LightStore& store, const Subpath& light, double share, float counts) {
     const float flux = flux_of(v);
     if (!(flux > 0)) continue;
     const float worth = promise(v.guide, v.beta).beyond;
-    store.places.push_back({first, s, region_of(v.guide), share, store.paths - 1, counts, flux, worth});
+    store.places.push_back({first, s, region_of(v.guide), share, store.paths - 1, 1, flux, worth});
     last = s;
   }
   store.vertices.insert(store.vertices.end(), light.vertices.begin(), light.vertices.begin() + last);
-}
-
-// Share of the choice that is even, whatever the fields say.
-constexpr double evenly = 0.5;
-
-void prefer(LightStore& store, float u) {
-  const size_t n = store.places.size();
-  double all = 0;
-  for (const LightStore::Place& at : store.places) all += double(at.worth);
-  if (!(all > 0) || !(all < infinity)) return;
-  std::vector<LightStore::Place> drawn;
-  double sum = 0;
-  for (size_t i = 0; i < n; ++i) {
-    const double times = evenly + (1 - evenly) * double(store.places[i].worth) / all * double(n);  // (J2)
-    sum += times;
-    while (double(drawn.size()) + u < sum) {
-      drawn.push_back(store.places[i]);
-      drawn.back().counts /= float(times);
-    }
-  }
-  store.places = std::move(drawn);
 }
 
 namespace {
@@ -154,9 +138,9 @@ void apply_chances(const LightStore::Block& b, const Views& views, uint32_t regi
 }
 }  // namespace
 
-void finish(LightStore& store, double inner) {
+void finish(LightStore& store) {
   make_blocks(
-      store, [&](uint32_t i) { return near_of(store.subpath(store.places[i]).back(), inner); }, false);
+      store, [&](uint32_t i) { return float(near_of(store.subpath(store.places[i]).back())); }, false);
 }
 
 void finish(LightStore& store, std::span<const float> near) {
@@ -200,41 +184,60 @@ uint32_t find(const Sums& sums, const Values& values, float at) {
 
 // How many joins a camera vertex is worth that would bring so much of its pixel. What comes of a join rises with the
 // root of what was expected, since what seems to bring most is mostly hidden: measured.
-float joins_for(float brings, bool seen) {
-  return std::clamp((seen ? 6 : 3) * std::sqrt(brings), 0.1f, 16.0f);
+float joins_for(const Joiner& joiner, float brings) {
+  if (!(joiner.worth > 0)) return 1;
+  return std::clamp(joiner.joins * std::sqrt(joiner.worth * brings), 0.1f, 32.0f);
 }  // (J3)
+
+// Of so many blocks from one on, and around.
+void expect_some(const LightStore& store, const Joiner& joiner, uint32_t from, uint32_t count, Expectation& out) {
+  out.values.resize(count);
+  out.sum = 0;
+  const Seer seer = seer_of(joiner);
+  const Guide& guide = joiner.vertex->guide;
+  const uint32_t region = region_of(guide);
+  for (uint32_t j = 0; j < count; ++j) {
+    const LightStore::Block& b = store.blocks[(from + j) % store.blocks.size()];
+    expect(b, seer, joiner.most, out.values[j]);
+    if (guide.fields) apply_chances(b, guide.fields->views, region, out.values[j]);
+    out.sum += sums_of(out.values[j]).back();
+  }
+}
 }  // namespace
 
-void choose(const LightStore& store, const Vertex& camera, JoinShares shares, int most, float worth, Sampler& sampler,
+void choose(const LightStore& store, const Joiner& joiner, Sampler& sampler, Expectation& expected,
             std::vector<StoreChoice>& out) {
   out.clear();
   const Vec2 u = sampler.next2();
   const uint32_t n = uint32_t(store.blocks.size());
   if (n == 0) return;
-  const uint32_t block = std::min(uint32_t(u.x * float(n)), n - 1);
-  const LightStore::Block& b = store.blocks[block];
-  Values values;
-  const double counts = camera.seen ? shares.seen : shares.inner;
-  const float near_lights = counts > 0 ? float(shares.inner / counts) : 1;
-  expect(b, seer_of(camera, near_of(camera, counts), near_lights), most, values);
-  if (camera.guide.fields) apply_chances(b, camera.guide.fields->views, region_of(camera.guide), values);
-  const Sums sums = sums_of(values);
-  const float sum = sums.back();
+  const uint32_t from = std::min(uint32_t(u.x * float(n)), n - 1), blocks = std::clamp(joiner.blocks, 1u, n);
+  expect_some(store, joiner, from, blocks, expected);
+  const float sum = expected.sum;
   if (!(sum > 0) || !(sum < infinity)) return;
-  const float share = float(double(n) / store.paths);
-  const float count = worth > 0 ? joins_for(worth * share * sum, camera.seen) : 1;
-  for (float mark = u.y; mark < count; ++mark) {
-    const uint32_t i = find(sums, values, mark / count * sum);
-    if (!(values[i] > 0)) continue;
-    const LightStore::Place& place = store.places[i * n + block];
-    out.push_back({&place, share * place.counts * sum / (values[i] * count)});
+  const float share = float(double(n) / blocks / store.paths);
+  const float count = joins_for(joiner, share * sum);
+  float before = 0, mark = u.y;
+  for (uint32_t j = 0; j < blocks && mark < count; ++j) {
+    const Values& values = expected.values[j];
+    const Sums sums = sums_of(values);
+    const uint32_t block = (from + j) % n;
+    for (; mark < count; ++mark) {
+      const float at = mark / count * sum - before;
+      if (j + 1 < blocks && !(at < sums.back())) break;
+      const uint32_t i = find(sums, values, at);
+      if (!(values[i] > 0)) continue;
+      const LightStore::Place& place = store.places[i * n + block];
+      out.push_back({&place, share * place.counts * sum / (values[i] * count)});
+    }
+    before += sums.back();
   }
 }
 
 void expect_all(const LightStore& store, const Vertex& camera, int most, const Prospect& known, Expectation& out) {
   out.values.resize(store.blocks.size());
   out.sum = 0;
-  const Seer seer = seer_of(camera, 0);
+  const Seer seer = seer_of(camera);
   for (size_t block = 0; block < store.blocks.size(); ++block) {
     Values& values = out.values[block];
     expect(store.blocks[block], seer, most, values);

@@ -7,6 +7,10 @@
 namespace ajar {
 namespace {
 
+// Joins for a pixel's whole light, where the lens sees the vertex and beyond, and blocks of lights that they choose
+// from there: at the full effort (J3).
+constexpr float seen_joins = 12, inner_joins = 3, most_blocks = 32;
+
 // One camera sample with its light subpath, at work.
 struct Work {
   const Job& job;
@@ -187,15 +191,43 @@ void join_next_event(Work& work, float worth) {
   if (!job.guided) record_place(v.guide, v.ng, *job.training, work.scratch.sightings);
 }
 
-// s >= 2: some of all light vertices of the chunk.
+// Joiner::before of the camera subpath's last vertex, as if it scattered evenly.
+double count_before(const WalkOptions& walk, const Subpath& camera) {
+  const Vertex &v = camera[camera.n - 1], &last = camera[camera.n - 2];
+  const double first = walk.light_paths, joins = last.seen ? walk.seen_share : walk.inner_share;
+  const double share = last.delta ? 0 : raise(walk.heuristic, camera.n == 2 ? first : joins);
+  const double back = double(std::abs(v.guide.wo_local.z) * inv_pi) * v.back;
+  const double all = camera.n == 2 ? share : extend(share, raise(walk.heuristic, ratio(back, last.own)), v.sum);
+  return walk.heuristic == Heuristic::power ? std::sqrt(all) : all;
+}
+
+// Share of the pixel's light that joins could bring the vertex: all that is not next-event estimation's.
+float share_of_joins(const Fields& fields, const Guide& guide, float worth) {
+  const FieldCell& cell = fields.q.cells[guide.cell];
+  return worth * std::max(cell.total - cell.direct, 0.0f);
+}
+
+Joiner joiner_of(const Job& job, const Subpath& camera, float worth) {
+  const Vertex& v = camera[camera.n - 1];
+  Joiner j{&v, job.walk.max_edges + 1 - camera.n, worth};
+  j.counts = v.seen ? job.walk.seen_share : job.walk.inner_share;
+  j.onwards = job.walk.inner_share;
+  j.before = count_before(job.walk, camera);
+  j.joins = (v.seen ? seen_joins : inner_joins) * job.effort;
+  if (!v.seen || !(worth > 0) || v.guide.cell == none) return j;
+  const float share = std::min(share_of_joins(*job.walk.fields, v.guide, worth), 1.0f);
+  j.blocks = uint32_t(job.effort * most_blocks * std::sqrt(share) + 0.5f);  // (J9)
+  return j;
+}
+
+// s >= 2: some of all light vertices of the batch.
 void join_stored(Work& work, float worth) {
   const Job& job = work.job;
-  const LightStore& store = work.scratch.halves->store;
+  const LightStore& store = *job.pool;
   const Subpath& camera = work.scratch.camera;
   const Vertex& v = camera[camera.n - 1];
   std::vector<StoreChoice>& choices = work.scratch.choices;
-  choose(store, v, {job.walk.inner_share, job.walk.seen_share}, job.walk.max_edges + 1 - camera.n, worth,
-         work.sample.sampler, choices);
+  choose(store, joiner_of(job, camera, worth), work.sample.sampler, work.scratch.expected, choices);
   for (const StoreChoice& choice : choices) {
     const LightStore::Place& at = *choice.place;
     Candidate c;
@@ -220,7 +252,7 @@ void join_all(Work& work, const Surface& surface) {
   const float worth = worth_of(work, camera[t - 1]);
   join_next_event(work, worth);
   if (job.photons) join_merged(job, work.sample, work.scratch);
-  if (job.light_half) return join_stored(work, worth);
+  if (job.pool) return join_stored(work, worth);
   const int most = std::min(light.n, job.walk.max_edges + 1 - t);
   Candidate c;
   for (int s = 2; s <= most; ++s)
@@ -250,22 +282,14 @@ void teach_camera(Work& work) {
   record_subpath(fields, *job.training, work.scratch.sightings, camera, Side::camera);
 }
 
-// Where the light subpaths of many tiles are kept at once, joins choose among one in so many.
-constexpr uint32_t stored_share = 4;
-
 }  // namespace
 
 void trace_light_half(const Job& job, Sample& sample, Scratch& scratch) {
   Work work{job, sample, scratch};
   scratch.light.n = 0;
   trace_light_subpath(work);
-  Halves& halves = *scratch.halves;
-  const bool merges = job.walk.merging.paths > 0;
-  if (const uint32_t one_in = merges ? stored_share : 1; job.merges_alone || !is_one_in(one_in, sample))
-    ++halves.store.paths;
-  else
-    add(halves.store, scratch.light, work.light_share, float(one_in));
-  if (merges) keep_photons(job, sample, work.light_share, scratch);
+  if (!job.merges_alone) add(scratch.traced, scratch.light, work.light_share);
+  if (job.walk.merging.paths > 0) keep_photons(job, sample, work.light_share, scratch);
   charge(scratch, scratch.ledger->light_ticks);
   if (!sample.teaches) return;
   record_subpath(*job.walk.fields, *job.training, scratch.sightings, scratch.light, Side::light);

@@ -7,7 +7,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind checkpoint_kind = {"AJARck14", "checkpoint", "render once with --checkpoint",
+constexpr FileKind checkpoint_kind = {"AJARck15", "checkpoint", "render once with --checkpoint",
                                       "start again without --resume"};
 
 // One list of fields for both ways.
@@ -54,7 +54,7 @@ void plain_fields(Io& io, State& plain) {
   io.value(plain.missed), io.value(plain.rays), io.value(plain.seen.passes), io.array(plain.seen.sum),
       io.array(plain.seen.half);
   io.value(plain.returned);
-  film_fields(io, plain.guided);
+  film_fields(io, plain.guided), io.value(plain.ledger);
 }
 
 void read(Reader& r, Pyramid& pyramid) {
@@ -84,7 +84,7 @@ void save_checkpoint(const std::string& path, const std::string& key, const Rend
     w.value(uint8_t(state.pyramid.kept)), w.value(uint64_t(state.pyramid.layers.size()));
     for (const auto& [st, layer] : state.pyramid.layers)
       w.value(st.first), w.value(st.second), w.array(layer.raw), w.array(layer.weighted);
-    w.value(state.pixels_per_light);
+    w.value(state.pixels_per_light), w.value(state.effort);
     plain_fields(w, state.plain);
     write(w, state.learning);
   });
@@ -108,7 +108,8 @@ void load_checkpoint(const std::string& path, const std::string& key, RenderStat
     throw Error(path + ": made without --techniques, whose images would lack its passes; leave --techniques out");
   read(r, state.pyramid);
   if (!state.pyramid.kept) state.pyramid = {};
-  r.value(state.pixels_per_light);
+  r.value(state.pixels_per_light), r.value(state.effort);
+  r.require(state.effort >= RenderState::least_effort && state.effort <= 1);
   r.require(state.pixels_per_light == RenderState::most_light || state.pixels_per_light == RenderState::least_light);
   state.plain.guided = state.film;  // for its place and filter, which are not in the file
   plain_fields(r, state.plain);

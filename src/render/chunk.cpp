@@ -2,6 +2,8 @@
 
 #include "chunk.h"
 
+#include "ajar/join/pool.h"
+
 namespace ajar {
 
 uint32_t share_of(const Job& job, const Film& film) {
@@ -54,12 +56,11 @@ Rgb trace_pixel(const Job& job, Sample& sample, bool splat, Scratch& scratch) {
   return sample.value * sample.filter;
 }
 
-// A number of the chunk's own in this pass, in [0, 1).
+}  // namespace
+
 float number_of(const Job& job, const Film& film, uint32_t chunk) {
   return to_unit(uint32_t(hash(hash(job.seed, 0x6a32), hash(film.dropped + film.passes, chunk)) >> 32));
 }
-
-}  // namespace
 
 void trace_light_halves(const Job& job, Film& film, uint32_t chunk, Scratch& scratch) {
   const TileBounds bounds = tile_bounds(film, chunk);
@@ -75,7 +76,7 @@ void trace_light_halves(const Job& job, Film& film, uint32_t chunk, Scratch& scr
       else
         film.camera[index_of(film, x, y)] = Rgb(0);
     }
-  clear(halves.store);
+  clear(halves.store), clear(scratch.traced);
   halves.photons.clear(), halves.few.clear();
   const size_t count = halves.samples.size(), n = job.pixels_per_light;
   halves.splat_counts = float(share_of(job, film));
@@ -86,8 +87,7 @@ void trace_light_halves(const Job& job, Film& film, uint32_t chunk, Scratch& scr
       job.learning ? std::max(recorded_one_in(*job.learning, film) / job.pixels_per_light, 1u) : 1;
   for (size_t i = 0; i < count; i += n)
     halves.samples[i].splat = trace_half(job, halves.samples[i].sample, recorded, scratch);
-  if (job.guided) prefer(halves.store, number_of(job, film, chunk));
-  finish(halves.store, job.walk.inner_share);
+  keep(halves.store, {&scratch.traced}, job.kept, number_of(job, film, chunk));
 }
 
 void trace_camera_halves(const Job& job, Film& film, Scratch& scratch) {

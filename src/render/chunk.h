@@ -6,6 +6,8 @@
 
 namespace ajar {
 
+/// A number of the chunk's own in the pass at hand, in [0, 1).
+float number_of(const Job& job, const Film& film, uint32_t chunk);
 /// One pixel in so many is traced.
 uint32_t share_of(const Job& job, const Film& film);
 /// The samples of a chunk and, where light subpaths are stored, their light halves.

@@ -48,6 +48,9 @@ struct Job {
   Trace light_half = nullptr;          ///< what is traced before, of all samples of a chunk or batch; null: nothing
   const PhotonMap* photons = nullptr;  ///< light vertices to merge with: of all light subpaths of the batch, and of
                                        ///< one in inner_photons; null: none
+  const LightStore* pool = nullptr;    ///< light vertices to join, of all light subpaths of the batch; null: one's own
+  double kept = 0;                     ///< light vertices of a chunk that go into the pool, about
+  float effort = 1;                    ///< how much is spent on joins (J8)
   bool merges_alone = false;           ///< nothing but merges brings light, so they need no weights
   int final_gather = 0;                ///< of photon, see RenderOptions
   const Vpls* vpls = nullptr;
@@ -79,7 +82,7 @@ struct Halves {
   };
   std::vector<Part> samples;
   float splat_counts = 1;  ///< for how many light subpaths each one's splats stand, where fewer than pixels are traced
-  LightStore store;
+  LightStore store;        ///< of what the chunk's light subpaths left, what goes into the pool
   Photons photons, few;
 };
 
@@ -93,6 +96,7 @@ struct NearPhoton {
 /// Storage of one thread at work on one chunk; kept from chunk to chunk. Threads share no cache line.
 struct alignas(64) Scratch {
   Subpath camera, light;
+  LightStore traced;     ///< light subpaths of the chunk at work
   Expectation expected;  ///< of choices
   std::vector<StoreChoice> choices;
   Visibility visibility;         ///< of lights, from what the lens sees of a chunk, in this pass

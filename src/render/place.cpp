@@ -3,6 +3,7 @@
 
 #include "ajar/core/parallel.h"
 #include "ajar/field/probes.h"
+#include "ajar/join/pool.h"
 #include "job.h"
 
 namespace ajar {
@@ -96,17 +97,6 @@ struct Worth {
 };
 Worth worth_of(const Vertex& v) {
   return {double(promise(v.guide, v.beta).beyond), double(std::max(luminance(v.beta), 0.0f))};
-}
-
-// So that `count` lights are kept, if each is with the probability value / result, at most 1; 0 to keep all.
-double find_threshold(std::vector<double> values, double count) {
-  std::sort(values.begin(), values.end());
-  double sum = 0;
-  for (const double v : values) sum += v;
-  size_t n = values.size();
-  if (count >= double(n)) return 0;
-  while (n > 0 && values[n - 1] * count > sum) sum -= values[--n], --count;  // these are sure to be kept
-  return count > 0 ? sum / count : 0;
 }
 
 // Share of the choice among lights that goes by flux, whatever the field says.

@@ -150,9 +150,9 @@ void doubt_plain(RenderState& state) {
   if (!plain.taken) {
     film = std::move(plain.guided);
     plain.returned = since.passes;
-    state.stats.ledger = {};  // it holds what is no longer in the image
+    state.stats.ledger = plain.ledger;
   }
-  if (!plain.taken || film.passes >= doubted * plain.passes) plain.guided = {};
+  if (!plain.taken || film.passes >= doubted * plain.passes) plain.guided = {}, plain.ledger = {};
 }
 
 }  // namespace
@@ -221,7 +221,7 @@ void try_plain(const Job& job, const std::string& integrator, std::vector<Scratc
   plain.settled = plain.taken || film.passes == last_look || plain.ratio > much_worse || error * passes > wild ||
                   (film.passes >= settling && plain.ratio > worse);
   if (plain.settled) plain.seen = {};
-  if (plain.taken && film.splats) plain.guided = film;
+  if (plain.taken && film.splats) plain.guided = film, plain.ledger = state.stats.ledger;
 }
 
 }  // namespace ajar

@@ -10,6 +10,7 @@
 #include "ajar/core/parallel.h"
 #include "ajar/field/portals.h"
 #include "ajar/field/walls.h"
+#include "ajar/join/pool.h"
 #include "chunk.h"
 #include "job.h"
 
@@ -56,7 +57,8 @@ struct Batch {
   std::vector<std::vector<Strategy>> strategies;
   std::vector<Ledger> ledgers;
   std::vector<uint64_t> rejected_at;  // path of each chunk's first rejected value
-  std::vector<Halves> halves;         // only where light subpaths of the whole batch are merged
+  std::vector<Halves> halves;         // only where light subpaths of the whole batch are joined or merged
+  LightStore pool;
   PhotonMap photons[2];
 };
 
@@ -69,25 +71,36 @@ Scratch& prepare(const Job& job, Batch& batch, uint32_t i, Scratch& scratch) {
   return scratch;
 }
 
-// Light halves of all chunks, then what is merged with them: their number must not depend on threads or clocks.
-void trace_merged(Job& job, Film& film, uint32_t from, Batch& batch, std::vector<Scratch>& scratches) {
+// Light vertices that the joins of a batch choose from, about: no more than fill blocks that are all looked at.
+constexpr double pooled_lights = 1000;
+
+// What the light halves of the batch's chunks left for all of them.
+void gather_lights(Job& job, const Film& film, uint32_t from, Batch& batch) {
+  std::vector<const LightStore*> stores;
+  std::vector<const Photons*> photons, few;
+  for (const Halves& h : batch.halves) stores.push_back(&h.store), photons.push_back(&h.photons), few.push_back(&h.few);
+  keep(batch.pool, stores, pooled_lights, number_of(job, film, ~from));
+  finish(batch.pool);
+  job.pool = &batch.pool;
+  if (!(job.walk.merging.paths > 0)) return;
+  fill(batch.photons[0], job.walk.merging, photons);
+  if (job.walk.merging.inner > 0) fill(batch.photons[1], job.walk.merging, few);
+  job.photons = batch.photons;
+}
+
+// Light halves of all chunks, then what is joined and merged with them: their number must not depend on threads or
+// clocks.
+void trace_in_halves(Job& job, Film& film, uint32_t from, Batch& batch, std::vector<Scratch>& scratches) {
   const uint32_t count = uint32_t(batch.splats.size());
   const auto at_work = [&](uint32_t i) -> Scratch& { return prepare(job, batch, i, scratches[thread_slot()]); };
   batch.halves.resize(count);
+  job.kept = std::max(2 * pooled_lights / count, 8.0);
   parallel_for(count, [&](uint32_t i) {
     Scratch& scratch = at_work(i);
     trace_light_halves(job, film, from + i, scratch);
     batch.rejected_at[i] = scratch.rejected_at;
   });
-  std::vector<const Photons*> lists;
-  for (const Halves& h : batch.halves) lists.push_back(&h.photons);
-  fill(batch.photons[0], job.walk.merging, lists);
-  if (job.walk.merging.inner > 0) {
-    std::vector<const Photons*> few;
-    for (const Halves& h : batch.halves) few.push_back(&h.few);
-    fill(batch.photons[1], job.walk.merging, few);
-  }
-  job.photons = batch.photons;
+  gather_lights(job, film, from, batch);
   parallel_for(count, [&](uint32_t i) {
     Scratch& scratch = at_work(i);
     scratch.rejected_at = batch.rejected_at[i];
@@ -128,9 +141,12 @@ uint32_t affordable_chunks(const RenderOptions& options, const RenderState& stat
   return std::max(uint32_t(std::max(affordable, 0.0)), least_chunks);
 }
 
-// Batches of which a pass is made when light subpaths are merged: as few as the bound allows, and alike.
-uint32_t equal_chunks(uint32_t all) {
-  const uint32_t batches = (all + batch_chunks - 1) / batch_chunks;
+// Chunks whose light vertices are joined: enough for pooled_lights, and few enough to end when the time is over.
+constexpr uint32_t pool_chunks = 128;
+
+// Batches of which a pass is made when light subpaths are joined or merged: as few as the bound allows, and alike.
+uint32_t equal_chunks(uint32_t all, uint32_t most) {
+  const uint32_t batches = (all + most - 1) / most;
   return (all + batches - 1) / batches;
 }
 
@@ -149,22 +165,39 @@ uint32_t pixels_per_light(const Film& film) {
   return estimate_sample_error(film) < noisy ? RenderState::least_light : RenderState::most_light;  // (J5)
 }
 
-// How many light subpaths are traced in the pass at hand. Where camera vertices choose among those of a whole tile, a
-// few are as good as many. While fields know little, all of them teach; a photon map has use for all.
-void set_light_paths(bool joined, RenderState& state, Job& job) {
+// What joins of a guided vertex count for in the weights: about as many are made of each, where it matters (J3).
+constexpr double guided_joins = 2;
+// Those at vertices that the lens sees, where joins have a small share of the light, and where they have all (J7).
+// Beyond, all that a camera subpath finds hangs on the one walk that came there, so that many joins tell hardly more
+// than one; measured (docs/results/joins.md).
+constexpr double least_seen_joins = 16, most_seen_joins = 1000;
+
+// What is spent on joins: by the share of the image's light that they and merges bring. The root, since the error of
+// what they bring falls with what is spent; measured (docs/results/joins.md).
+float effort_for(const Ledger& ledger) {
+  double joined = 0;
+  for (int s = 2; s <= Ledger::most; ++s)
+    for (int t = 2; t <= Ledger::most; ++t) joined += ledger.strategies[s][t].energy + ledger.merges[s][t].energy;
+  const double all = total_energy(ledger);
+  return all > 0 && all < infinity ? std::clamp(float(std::sqrt(joined / all)), RenderState::least_effort, 1.0f)
+                                   : 0;  // (J8)
+}
+
+// How many light subpaths are traced in the pass at hand, and how much their joins may cost. Where camera vertices
+// choose among those of many tiles, a few are as good as many. While fields know little, all of them teach; a photon
+// map has use for all.
+void plan_pass(bool joined, bool plain, RenderState& state, Job& job) {
   const Film& film = state.film;
-  const bool looks = film.chunks == 0 && film.passes >= 8 && std::has_single_bit(film.passes);
-  if (joined && looks) state.pixels_per_light = pixels_per_light(film);
-  const bool knows = joined && state.learning.fields.generation >= blind_generations;
+  const bool looks = !plain && film.chunks == 0 && std::has_single_bit(film.passes);
+  if (joined && looks && film.passes >= 8) state.pixels_per_light = pixels_per_light(film);
+  if (const float effort = looks ? effort_for(state.stats.ledger) : 0; effort > 0) state.effort = effort;
+  job.effort = state.effort;
+  if (job.guided && job.light_half)
+    job.walk.seen_share = std::max(most_seen_joins * sqr(double(state.effort)), least_seen_joins);
+  const bool knows = joined && !plain && state.learning.fields.generation >= blind_generations;
   job.pixels_per_light = knows ? state.pixels_per_light : 1;
   job.walk.light_paths = film.splats ? light_paths_of(film, 0, chunk_count(film), job.pixels_per_light) : 0;
 }
-
-// What joins of a guided vertex count for in the weights: about as many are made of each, where it matters (J3).
-constexpr double guided_joins = 2;
-// Those at vertices that the lens sees (J7). Beyond, all that a camera subpath finds hangs on the one walk that came
-// there, so that many joins tell hardly more than one; measured (docs/results/joins.md).
-constexpr double seen_joins = 16;
 
 // What merges beyond the first vertex at which a camera subpath is merged count for (K3). They share the walk that
 // found it, so that many of them tell hardly more than one; measured (docs/results/merging.md).
@@ -302,7 +335,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   RenderStats& stats = state.stats;
   Job job = make_job(scene, accel, options);
   const bool merging = integrator.merges && options.merge_radius > 0;
-  const bool joined = integrator.guided && integrator.light_half && !merging && !integrator.vpls;  // by tiles
+  const bool joined = integrator.guided && integrator.light_half && !merging && !integrator.vpls;
   job.trace = integrator.trace, job.light_half = integrator.light_half;
   job.merges_alone = integrator.trace == trace_photon;
   if (job.merges_alone) job.final_gather = options.final_gather;
@@ -313,7 +346,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   if (is_guided(options.integrator)) {
     job.guided = true;
     job.walk.inner_share = film.splats ? guided_joins : 0;
-    job.walk.seen_share = film.splats ? (integrator.light_half ? seen_joins : guided_joins) : 0;
+    job.walk.seen_share = job.walk.inner_share;  // more where they choose among many, see plan_pass
   }
   const bool leaving_out = may_leave_out(options);
   double wall0 = 0, cpu0 = 0;
@@ -353,17 +386,20 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
     if (leaving_out && state.learning.fields.generation >= blind_generations)
       threads.run([&] { try_plain(job, options.integrator, scratches, state); });
     const bool plain = leaving_out && state.plain.taken;
-    if (plain) batch.halves.clear();
-    job.walk.merging = merging && !plain ? merging_of(scene, options, film, equal_chunks(all)) : Merging{};
+    job.walk.merging =
+        merging && !plain ? merging_of(scene, options, film, equal_chunks(all, batch_chunks)) : Merging{};
     job.walk.merging.paths /= share_of(job, film);
-    threads.run([&] { set_light_paths(joined && !plain, state, job); });
-    const uint32_t count = merging && !plain ? std::min(equal_chunks(all), all - from)
-                                             : std::min({batch_chunks, all - from, affordable_chunks(options, state)});
+    threads.run([&] { plan_pass(joined, plain, state, job); });
+    const bool joins_vpls = integrator.vpls && !in_training(state.learning);
+    const bool in_halves = integrator.light_half && !plain && !joins_vpls;
+    const uint32_t most_at_once =
+        in_halves ? equal_chunks(all, merging ? batch_chunks : pool_chunks) : affordable_chunks(options, state);
+    const uint32_t count = std::min({batch_chunks, all - from, most_at_once});
+    if (!in_halves) batch.halves.clear();
     batch.splats.resize(count);
     batch.strategies.resize(count);
     batch.ledgers.assign(count, {});
     batch.rejected_at.resize(count);
-    const bool joins_vpls = integrator.vpls && !in_training(state.learning);
     const Trace trace = integrator.vpls && !joins_vpls ? trace_bdpt : integrator.trace;
     threads.run([&] {
       Job job_now = joins_vpls ? with_vpls(job, film, scratches, vpls) : job;
@@ -371,8 +407,8 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
       if (plain) job_now = plainly(job_now);
       for (uint32_t i = 0; i < count; ++i) batch.splats[i].clear(), batch.strategies[i].clear();
       if (joins_vpls) std::copy_n(vpls.splats.begin() + from, count, batch.splats.begin());
-      if (job.walk.merging.paths > 0) {
-        trace_merged(job_now, film, from, batch, scratches);
+      if (in_halves) {
+        trace_in_halves(job_now, film, from, batch, scratches);
       } else {
         parallel_for(count, [&](uint32_t i) {
           Scratch& scratch = prepare(job_now, batch, i, scratches[thread_slot()]);

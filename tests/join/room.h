@@ -67,7 +67,7 @@ struct Room {
       add(out, light, walk.first_share);
     }
     out.places.resize(std::min(out.places.size(), most_places));
-    finish(out, 1);
+    finish(out);
     return out;
   }
 

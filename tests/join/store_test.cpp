@@ -10,10 +10,15 @@
 namespace ajar::room {
 namespace {
 
+void draw(const LightStore& store, const Joiner& joiner, Sampler& sampler, std::vector<StoreChoice>& choices) {
+  Expectation storage;
+  choose(store, joiner, sampler, storage, choices);
+}
+
 // The mean of weight x g over draws is the sum of g over all places, over paths; and a weight wrong by a little would
 // be seen. Returns how many vertices had something to bring.
 int expect_unbiased(const LightStore& store, const std::vector<Subpath>& cameras, int most = most_edges, int n = 40'000,
-                    float worth = 0) {
+                    float worth = 0, uint32_t blocks = 1) {
   std::vector<StoreChoice> choices;
   int lit = 0;
   for (size_t k = 0; k < cameras.size(); ++k) {
@@ -23,7 +28,9 @@ int expect_unbiased(const LightStore& store, const std::vector<Subpath>& cameras
     Sampler sampler = draws(k);
     double sum = 0, squares = 0;
     for (int i = 0; i < n; ++i) {
-      choose(store, end_of(cameras[k]), {}, most, worth, sampler, choices);
+      Joiner joiner{&end_of(cameras[k]), most, worth};
+      joiner.blocks = blocks;
+      draw(store, joiner, sampler, choices);
       double x = 0;
       for (const StoreChoice& choice : choices) {
         EXPECT_TRUE(choice.weight > 0 && choice.weight < infinity);
@@ -38,37 +45,6 @@ int expect_unbiased(const LightStore& store, const std::vector<Subpath>& cameras
     EXPECT_LT(5 * error, 0.2 * expected) << "too noisy to see a wrong weight";
   }
   return lit;
-}
-
-// What fields expect to bring much is there several times; the mean over draws is what all bring.
-TEST(LightStore, WhatIsPreferredStandsForAllPlaces) {
-  const Room room(1, true);
-  const LightStore all = room.store(64);
-  std::map<std::pair<uint32_t, int>, double> times;
-  size_t most = 0;
-  constexpr int n = 1000;
-  for (int i = 0; i < n; ++i) {
-    LightStore some = all;
-    prefer(some, (float(i) + 0.5f) / n);
-    EXPECT_NEAR(double(some.places.size()), double(all.places.size()), 1);
-    std::map<std::pair<uint32_t, int>, size_t> here;
-    for (const LightStore::Place& at : some.places) {
-      times[{at.path, at.s}] += double(at.counts) / n;
-      most = std::max(most, ++here[{at.path, at.s}]);
-    }
-  }
-  EXPECT_GT(most, 3u);
-  EXPECT_EQ(times.size(), all.places.size());
-  for (const auto& [place, count] : times) EXPECT_NEAR(count, 1, 0.01);
-}
-
-TEST(LightStore, StandsForAllPlacesOfWhichSomeCountMore) {
-  const Room room(1, true);
-  LightStore store = room.store(64);
-  prefer(store, 0.5f);
-  ASSERT_GT(std::count_if(store.places.begin(), store.places.end(), [](const auto& p) { return p.counts < 0.5f; }), 4);
-  finish(store, 1);
-  EXPECT_GT(expect_unbiased(store, room.cameras(12)), 8);
 }
 
 TEST(LightStore, PartsAddUpToTheWhole) {
@@ -97,6 +73,15 @@ TEST(LightStore, StandsForAllPlacesWhateverViewsSay) {
   EXPECT_GT(expect_unbiased(room.store(64), room.cameras(12)), 8);
 }
 
+TEST(LightStore, StandsForAllPlacesHoweverManyBlocksAreLookedAt) {
+  const Room room(1, true);
+  const LightStore store = room.store(64);
+  ASSERT_GT(store.blocks.size(), 3u);
+  for (const uint32_t blocks : {2u, 3u, uint32_t(store.blocks.size()), 1000u})
+    for (const float worth : {0.0f, 0.3f})
+      EXPECT_GT(expect_unbiased(store, room.cameras(6), most_edges, 20'000, worth, blocks), 3) << blocks;
+}
+
 // What is worth little is joined rarely and counts for the more, what is worth much often. (J3)
 TEST(LightStore, StandsForAllPlacesHoweverManyAreJoined) {
   const Room room;
@@ -109,18 +94,18 @@ TEST(LightStore, StandsForAllPlacesHoweverManyAreJoined) {
     size_t joins = 0, vertices = 0;
     for (const Subpath& camera : room.cameras(6))
       for (int i = 0; i < 1000; ++i) {
-        choose(store, end_of(camera), {}, most_edges, 0, sampler, choices);
+        draw(store, {&end_of(camera), most_edges}, sampler, choices);
         vertices += choices.size();
-        choose(store, end_of(camera), {}, most_edges, worth, sampler, choices);
+        draw(store, {&end_of(camera), most_edges, worth}, sampler, choices);
         joins += choices.size();
       }
     const double mean = double(joins) / double(vertices);
     EXPECT_GT(mean, before) << worth;
     EXPECT_GT(mean, 0.08) << worth;
-    EXPECT_LT(mean, 17) << worth;
+    EXPECT_LT(mean, 33) << worth;
     before = mean;
   }
-  EXPECT_GT(before, 15);
+  EXPECT_GT(before, 30);
 }
 
 // One place; a full block; one more, which makes two blocks of unequal number.
@@ -142,7 +127,7 @@ TEST(LightStore, StandsForPlacesOfShortSubpathsAlone) {
   std::vector<StoreChoice> choices;
   for (const Subpath& camera : room.cameras(12))
     for (int i = 0; i < 200; ++i) {
-      choose(store, end_of(camera), {}, 2, 0, sampler, choices);
+      draw(store, {&end_of(camera), 2}, sampler, choices);
       for (const StoreChoice& choice : choices) ASSERT_EQ(choice.place->s, 2);
     }
 }
@@ -165,9 +150,11 @@ double shine_of(const Vertex& v, const glm::dvec3& w) {
   return shine(g, glm::dot(n, v.guide.wo), glm::dot(n, unit), glm::dot(unit, v.guide.wo));
 }
 
-// The probabilities that places ought to have, from the vertices themselves. (J1)
-std::vector<double> probabilities(const LightStore& store, const Room& room, const Vertex& c) {
-  const size_t n = store.blocks.size();
+// The probabilities that places ought to have, from the vertices themselves: choices are among one block, or all. (J1)
+std::vector<double> probabilities(const LightStore& store, const Room& room, const Joiner& joiner) {
+  const Vertex& c = *joiner.vertex;
+  const size_t n = joiner.blocks > 1 ? 1 : store.blocks.size();
+  const double lights = joiner.onwards / joiner.counts, before = joiner.before / joiner.counts;
   std::vector<double> p, sums(n);
   for (size_t i = 0; i < store.places.size(); ++i) {
     const Vertex& a = store.subpath(store.places[i]).back();
@@ -175,7 +162,7 @@ std::vector<double> probabilities(const LightStore& store, const Room& room, con
     const double d2 = glm::dot(w, w), cosines = std::max(glm::dot(glm::dvec3(a.guide.frame.n), w), 0.0) *
                                                 std::max(-glm::dot(glm::dvec3(c.guide.frame.n), w), 0.0) / d2;
     const double shines_c = shine_of(c, -w), shines_a = shine_of(a, w);
-    const double g = cosines / d2, found = g / pi * (shines_c / a.own + shines_a / c.own);
+    const double g = cosines / d2, found = g / pi * (lights * shines_c / a.own + before * shines_a / c.own);
     const double flux = luminance(a.beta) * std::max(luminance(albedo(a.guide.bsdf, a.guide.wo_local)), 0.02f);
     double sees = 1;
     if (a.guide.cell != none && c.guide.cell != none)
@@ -198,11 +185,13 @@ TEST(LightStore, ChoosesByWhatPlacesWouldBring) {
     if (cameras.size() < 8 && is_glossy(end_of(camera))) cameras.push_back(camera);
   ASSERT_EQ(cameras.size(), 8u);
   for (size_t k = 0; k < cameras.size(); ++k) {
-    const std::vector<double> p = probabilities(store, room, end_of(cameras[k]));
+    Joiner joiner{&end_of(cameras[k]), most_edges};
+    if (k % 2 == 1) joiner.counts = 20, joiner.onwards = 2, joiner.before = 300, joiner.blocks = 1000;
+    const std::vector<double> p = probabilities(store, room, joiner);
     std::vector<double> drawn(p.size());
     Sampler sampler = draws(100 + k);
     for (int i = 0; i < n; ++i) {
-      choose(store, end_of(cameras[k]), {}, most_edges, 0, sampler, choices);
+      draw(store, joiner, sampler, choices);
       ASSERT_LE(choices.size(), 1u);
       for (const StoreChoice& choice : choices) drawn[index_of(store, choice)] += 1;
     }
@@ -231,12 +220,12 @@ TEST(LightStore, NothingIsChosenFromNothing) {
   const LightStore empty = room.store(0), full = room.store(64);
   LightStore black;  // subpaths that ended at once
   add(black, {}, 1);
-  finish(black, 1);
+  finish(black);
   EXPECT_EQ(black.paths, 1u);
   std::vector<StoreChoice> choices;
   const auto chooses = [&](const LightStore& store, const Vertex& c, int most, Sampler& sampler) {
     choices.resize(3);  // of the vertex before
-    choose(store, c, {}, most, 1e9f, sampler, choices);
+    draw(store, {&c, most, 1e9f}, sampler, choices);
     return !choices.empty();
   };
   for (const Subpath& camera : room.cameras(20)) {
@@ -259,7 +248,7 @@ TEST(LightStore, NothingBehindIsChosen) {
     Sampler sampler = draws(2);
     std::vector<StoreChoice> choices;
     for (int i = 0; i < 1000; ++i) {
-      choose(store, c, {}, most_edges, 0, sampler, choices);
+      draw(store, {&c, most_edges}, sampler, choices);
       for (const StoreChoice& choice : choices) {
         const Vertex& a = store.subpath(*choice.place).back();
         ASSERT_TRUE(may_scatter(c.guide, a.p - c.p));

@@ -150,6 +150,7 @@ void add_caustic(Film& film) {
 void take_over(RenderState& state) {
   state.plain.taken = state.plain.settled = true;
   state.plain.passes = state.film.passes, state.plain.guided = state.film;
+  state.plain.ledger = state.stats.ledger;
 }
 
 void expect_same_image(const RenderState& a, const RenderState& b) {

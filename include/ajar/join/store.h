@@ -10,7 +10,8 @@
 
 namespace ajar {
 
-/// Vertices of light subpaths that can be joined (s >= 2), and all vertices that their joins read.
+/// Vertices of light subpaths that can be joined (s >= 2), and all vertices that their joins read. (pool.h keeps a
+/// few.)
 struct LightStore {
   struct Place {
     uint32_t first = 0;  ///< of its subpath among the vertices
@@ -28,7 +29,7 @@ struct LightStore {
     float x[width] = {}, y[width] = {}, z[width] = {};
     float nx[width] = {}, ny[width] = {}, nz[width] = {};  ///< shading normal on the side that it is lit from
     float flux[width] = {};    ///< luminance that it scatters at right angles, taken as diffuse [per solid angle]; or 0
-    float near[width] = {};    ///< (J1): geometry terms above 1 / near make the join the lesser strategy
+    float near[width] = {};    ///< (J1): geometry terms above 1 / near make the join the lesser strategy, if alike
     float behind[width] = {};  ///< -1 where it scatters to the other side too, else 0
     bool glossy = false;       ///< whether what follows says anything (J6)
     float wx[width] = {}, wy[width] = {}, wz[width] = {};                         ///< where its light comes from, unit
@@ -45,9 +46,17 @@ struct LightStore {
   std::span<const Vertex> subpath(const Place& at) const { return {vertices.data() + at.first, size_t(at.s)}; }
 };
 
-/// As in WalkOptions: what joins count for in the weights, and those at vertices that the lens sees.
-struct JoinShares {
-  double inner = 1, seen = 1;
+/// A camera vertex that is to be joined. What strategies count for is not raised.
+struct Joiner {
+  const Vertex* vertex = nullptr;
+  int most = 0;     ///< largest s
+  float worth = 0;  ///< what the vertex makes of what is brought, relative to what its pixel is expected to be; 0: not
+                    ///< known, one join
+  double counts = 1;    ///< what its joins count for in the weights (J7)
+  double onwards = 1;   ///< the same of a join at the light's vertex, if the camera subpath went on to it
+  double before = 1;    ///< the same of all with fewer camera vertices, if the light subpath came here
+  float joins = 3;      ///< how many for a pixel's whole light (J3)
+  uint32_t blocks = 1;  ///< of the store, that are looked at
 };
 
 struct StoreChoice {
@@ -56,31 +65,26 @@ struct StoreChoice {
 };
 
 void clear(LightStore& store);
-/// share: of the walk. counts: for so many light subpaths, where others are left out; paths counts those too.
-void add(LightStore& store, const Subpath& light, double share, float counts = 1);
-/// Puts in place of all places as many that are drawn (systematic sampling, u in [0, 1)): half of the choice is even,
-/// half goes by what the fields expect each vertex to bring to the image. Those that are drawn count for the others.
-/// Nothing happens where fields know nothing. (J2)
-void prefer(LightStore& store, float u);
-/// Makes the blocks, when all is added. inner as in WalkOptions.
-void finish(LightStore& store, double inner);
+/// share: of the walk.
+void add(LightStore& store, const Subpath& light, double share);
+/// Makes the blocks, when all is added.
+void finish(LightStore& store);
 /// The same with what near of each place is to be.
 void finish(LightStore& store, std::span<const float> near);
 /// Adds all of another store, before the blocks are made.
 void append(LightStore& store, const LightStore& more);
-/// Draws from the places of one block in proportion to what they would bring unoccluded times the chance that they are
-/// seen (resampling: Talbot et al. 2005), evenly spaced over their sums. worth: what the camera vertex makes of what is
-/// brought, relative to what its pixel is expected to be; the more, the more are drawn, in the mean a tenth to 16 (J3).
-/// 0, where that is not known: one. most: largest s. Takes one pair of numbers.
-void choose(const LightStore& store, const Vertex& camera, JoinShares shares, int most, float worth, Sampler& sampler,
-            std::vector<StoreChoice>& out);
-
-struct Visibility;
-/// What all places of a store, which were put in order, would bring to one camera vertex.
+/// What places of a store would bring to one camera vertex.
 struct Expectation {
   std::vector<std::array<float, LightStore::width>> values;  ///< per block
   float sum = 0;
 };
+/// Draws from the places of some blocks in proportion to what they would bring unoccluded times the chance that they
+/// are seen (resampling: Talbot et al. 2005), evenly spaced over their sums: the more of the pixel's light is expected,
+/// the more, in the mean a tenth to 32 (J3). Takes one pair of numbers. expected: storage.
+void choose(const LightStore& store, const Joiner& joiner, Sampler& sampler, Expectation& expected,
+            std::vector<StoreChoice>& out);
+
+struct Visibility;
 /// What is known of which places a camera vertex sees: by what its tile saw of each in this pass, by the region that it
 /// is in, or nothing, where all places count in full.
 struct Prospect {
@@ -88,7 +92,7 @@ struct Prospect {
   const Views* views = nullptr;
   uint32_t region = no_region;
 };
-/// most: largest s.
+/// Of all places; the store was put in order. most: largest s.
 void expect_all(const LightStore& store, const Vertex& camera, int most, const Prospect& known, Expectation& out);
 /// Draws about `count` places, each on its own (Poisson sampling), in proportion to what is expected of it and at most
 /// once. key: random bits. Whether a place is drawn depends on its chance and on a hash of key and light vertex alone:

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ajar/film/film.h"
+#include "ajar/render/ledger.h"
 
 namespace ajar {
 
@@ -38,6 +39,7 @@ struct Plain {
   uint64_t rays = 0;     ///< that it took
   PassHalves seen;
   Film guided;            ///< the image when path tracing took over, while it may still be given back; else empty
+  Ledger ledger;          ///< of that image
   uint32_t returned = 0;  ///< passes of path tracing that were dropped when it was
 };
 

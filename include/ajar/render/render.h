@@ -31,7 +31,11 @@ struct RenderState {
   /// ... passes.
   uint32_t pixels_per_light = most_light;
   static constexpr uint32_t most_light = 2, least_light = 4;  ///< in noisy images, and in others
-  Plain plain;                                                ///< when RenderOptions::leaves_out
+  /// Spent on joins, of what may be: by the share of the light that they bring (J8). Looked at anew after 1, 2, 4 ...
+  /// passes.
+  float effort = 0.5f;
+  static constexpr float least_effort = 1.0f / 16;
+  Plain plain;  ///< when RenderOptions::leaves_out
 };
 
 /// Seen between batches of chunks, a few times a second at most for large images; return false to stop. May be empty.

@@ -1,0 +1,19 @@
+// Enters: the light vertices of many subpaths.
+// Leaves: a few of them that stand for all.
+#pragma once
+
+#include "ajar/join/store.h"
+
+namespace ajar {
+
+/// The least value that is sure to be kept, so that `count` are in the mean, if each value is with the probability
+/// value / result, at most 1; 0 to keep all.
+double find_threshold(std::vector<double> values, double count);
+
+/// Fills a store with about `count` of the places of others, or with all where there are fewer, by what the fields
+/// expect each to bring to the image; a part of the choice goes by flux, a part is even, and all of that where fields
+/// know nothing. What is kept stands for what is not: Place::counts (J2). u in [0, 1): systematic sampling. Blocks are
+/// not made yet.
+void keep(LightStore& out, const std::vector<const LightStore*>& stores, double count, float u);
+
+}  // namespace ajar

@@ -1,0 +1,113 @@
+// A few of all light vertices, kept: in the mean over what could have been drawn they stand for all.
+#include "ajar/join/pool.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "room.h"
+
+namespace ajar::room {
+namespace {
+using Key = std::pair<uint32_t, int>;
+Key key_of(const LightStore::Place& at) { return {at.path, at.s}; }
+
+constexpr int n = 1000;
+float mark(int i) { return (float(i) + 0.5f) / n; }
+
+// Each place counts 1 in the mean over marks, and is there at most once.
+void expect_stands_for(const LightStore& all, double count, const std::function<void(LightStore&, float)>& fill) {
+  std::map<Key, double> counts, squares;
+  for (int i = 0; i < n; ++i) {
+    LightStore some;
+    fill(some, mark(i));
+    EXPECT_EQ(some.paths, all.paths);
+    EXPECT_NEAR(double(some.places.size()), count, 2);
+    std::map<Key, int> here;
+    for (const LightStore::Place& at : some.places) {
+      counts[key_of(at)] += double(at.counts) / n, squares[key_of(at)] += sqr(double(at.counts)) / n;
+      EXPECT_EQ(++here[key_of(at)], 1);
+      EXPECT_GE(at.counts, 1 - 1e-6f);
+    }
+  }
+  EXPECT_EQ(counts.size(), all.places.size());
+  for (const auto& [place, times] : counts)
+    EXPECT_NEAR(times, 1, 1e-3 + 5 * std::sqrt((squares[place] - sqr(times)) / n));
+}
+
+TEST(Pool, WhatIsKeptStandsForAllPlaces) {
+  const Room room(1, true);
+  const LightStore all = room.store(64);
+  ASSERT_GT(all.places.size(), 80u);
+  expect_stands_for(all, 40, [&](LightStore& some, float u) { keep(some, {&all}, 40, u); });
+}
+
+// In two steps, by parts.
+TEST(Pool, WhatIsKeptOfWhatWasKeptStandsForAllPlaces) {
+  const Room room(1, true);
+  const LightStore all = room.store(64);
+  LightStore first, second, together;
+  append(together, all), append(together, all);
+  expect_stands_for(together, 40, [&](LightStore& some, float u) {
+    const float other = float(hash(uint64_t(double(u) * n), 3) % n) / n;
+    keep(first, {&all}, 80, u), keep(second, {&all}, 80, u);
+    keep(some, {&first, &second}, 40, other);
+  });
+}
+
+// What fields expect to bring much is kept more often, in proportion.
+TEST(Pool, KeepsWhatIsWorthMuch) {
+  const Room room(1, true);
+  const LightStore all = room.store(64);
+  LightStore some;
+  double worth = 0, kept = 0, mean = 0;
+  for (const LightStore::Place& at : all.places) worth += double(at.worth) / double(all.places.size());
+  for (int i = 0; i < n; ++i) {
+    keep(some, {&all}, 20, mark(i));
+    for (const LightStore::Place& at : some.places)
+      kept += double(at.worth), mean += double(at.counts) * double(at.worth);
+  }
+  ASSERT_GT(worth, 0);
+  EXPECT_GT(kept / (20 * n), 1.5 * worth);
+  EXPECT_NEAR(mean / (double(n) * double(all.places.size())), worth, 0.02 * worth);
+}
+
+// Where fields know nothing, and where there are fewer than are asked for.
+TEST(Pool, KeepsAllWhereThereAreFew) {
+  const Room room;
+  const LightStore all = room.store(16), empty = room.store(0);
+  LightStore some;
+  for (const double count : {double(all.places.size()), 1e6}) {
+    keep(some, {&empty, &all, &empty}, count, 0.7f);
+    ASSERT_EQ(some.places.size(), all.places.size());
+    for (const LightStore::Place& at : some.places) EXPECT_EQ(at.counts, 1);
+  }
+  keep(some, {&empty}, 10, 0.5f);
+  EXPECT_TRUE(some.places.empty());
+  keep(some, {}, 10, 0.5f);
+  EXPECT_EQ(some.paths, 0u);
+}
+
+TEST(Pool, KeepsWholeSubpaths) {
+  const Room room(1, true);
+  const LightStore all = room.store(64), more = room.store(32);
+  LightStore some;
+  keep(some, {&all, &more}, 60, 0.3f);
+  EXPECT_LT(some.vertices.size(), all.vertices.size());
+  std::map<Key, const LightStore::Place*> known;
+  LightStore whole;
+  append(whole, all), append(whole, more);
+  for (const LightStore::Place& at : whole.places) known[key_of(at)] = &at;
+  size_t of_more = 0;
+  for (const LightStore::Place& at : some.places) {
+    const LightStore::Place& other = *known.at(key_of(at));
+    of_more += at.path >= all.paths;
+    ASSERT_EQ(some.subpath(at).size(), whole.subpath(other).size());
+    for (size_t i = 0; i < size_t(at.s); ++i) EXPECT_EQ(some.subpath(at)[i].p, whole.subpath(other)[i].p);
+    EXPECT_EQ(at.share, other.share);
+  }
+  EXPECT_GT(of_more, 5u);
+}
+
+}  // namespace
+}  // namespace ajar::room
