@@ -11,14 +11,21 @@ bool is_wrapper(const Material& m) {
          (m.kind == MaterialKind::twosided && m.nested[1] == none);
 }
 
-bool has_masks(const Scene& scene, uint32_t id) {
-  while (is_wrapper(scene.materials[id])) id = scene.materials[id].nested[0];
-  const MaterialKind kind = scene.materials[id].kind;
-  return kind == MaterialKind::mask || kind == MaterialKind::null;
+// Ordered: what contains several of them is the last.
+enum class Holes : uint8_t { none, even, by_side };
+
+// Where a material lets light pass: alike from both sides, unless those of a twosided one are two.
+Holes holes_in(const Scene& scene, uint32_t id) {
+  const Material& m = scene.materials[id];
+  Holes out = m.kind == MaterialKind::mask || m.kind == MaterialKind::null ? Holes::even : Holes::none;
+  for (const uint32_t nested : m.nested)
+    if (nested != none) out = std::max(out, holes_in(scene, nested));
+  const bool two_faced = m.kind == MaterialKind::twosided && m.nested[1] != none;
+  return two_faced && out != Holes::none ? Holes::by_side : out;
 }
 
-// What is left of a material without its masks: a part of it, or a copy of what is around them, made anew each time
-// since the material may have changed.
+// What is left of a material without the masks around it: a part of it, or a copy of what is around them, made anew
+// each time since the material may have changed. Masks inside of a sum stay: resolve() sees to them.
 uint32_t unmasked(Scene& scene, uint32_t id) {
   const uint32_t nested = scene.materials[id].nested[0];
   if (scene.materials[id].kind == MaterialKind::mask) return unmasked(scene, nested);
@@ -35,11 +42,46 @@ uint32_t unmasked(Scene& scene, uint32_t id) {
   return bare;
 }
 
+float opacity_of(const Scene& scene, uint32_t id, const Surface& at) {
+  const Material& m = scene.materials[id];
+  const auto share = [&] { return std::clamp(eval_scalar(scene, m.weight, at), 0.0f, 1.0f); };
+  if (is_wrapper(m)) return opacity_of(scene, m.nested[0], at);
+  switch (m.kind) {
+    case MaterialKind::null:
+      return 0;
+    case MaterialKind::mask:
+      return share() * opacity_of(scene, m.nested[0], at);
+    case MaterialKind::blend: {
+      const float first = opacity_of(scene, m.nested[0], at), second = opacity_of(scene, m.nested[1], at);
+      return first == second ? first : first + share() * (second - first);
+    }
+    case MaterialKind::mixture: {  // what its weights leave over is absorbed
+      float passing = 0;
+      for (int i = 0; i < 4; ++i)
+        if (m.nested[i] != none) passing += m.weights[i] * (1 - opacity_of(scene, m.nested[i], at));
+      return std::max(1 - passing, 0.0f);
+    }
+    default:
+      return 1;
+  }
+}
+
+bool is_open(const Scene& scene, uint32_t id) {
+  const Material& m = scene.materials[id];
+  if (m.kind == MaterialKind::null) return true;
+  if (m.kind == MaterialKind::mask && m.weight.texture == none && !(max_component(m.weight.value) > 0)) return true;
+  if (m.kind == MaterialKind::blend) return is_open(scene, m.nested[0]) && is_open(scene, m.nested[1]);
+  return (m.kind == MaterialKind::mask || is_wrapper(m)) && is_open(scene, m.nested[0]);
+}
+
 }  // namespace
 
 void cut_out(Scene& scene, Shape& shape) {
-  if (shape.mask != none && unmasked(scene, shape.mask) != shape.material) shape.mask = none;
-  if (shape.light != none || !has_masks(scene, shape.material)) return;
+  const auto is_stale = [&] {
+    return unmasked(scene, shape.mask) != shape.material || holes_in(scene, shape.mask) != Holes::even;
+  };
+  if (shape.mask != none && is_stale()) shape.mask = none;
+  if (shape.light != none || holes_in(scene, shape.material) != Holes::even) return;
   if (shape.mask == none) shape.mask = shape.material;
   shape.material = unmasked(scene, shape.material);
 }
@@ -48,20 +90,9 @@ float opacity(const Scene& scene, uint32_t shape, uint32_t prim, const Vec2& bar
   Surface at;
   at.shape = shape, at.prim = prim, at.bary = bary;
   at.uv = texture_point(scene, shape, prim, bary);
-  float out = 1;
-  const Material* m = &scene.materials[scene.shapes[shape].mask];
-  for (; m->kind == MaterialKind::mask || is_wrapper(*m); m = &scene.materials[m->nested[0]])
-    if (m->kind == MaterialKind::mask) out *= std::clamp(eval_scalar(scene, m->weight, at), 0.0f, 1.0f);
-  return m->kind == MaterialKind::null ? 0 : out;
+  return opacity_of(scene, scene.shapes[shape].mask, at);
 }
 
-bool is_open(const Scene& scene, const Shape& shape) {
-  if (shape.mask == none) return false;
-  const Material* m = &scene.materials[shape.mask];
-  for (; m->kind == MaterialKind::mask || is_wrapper(*m); m = &scene.materials[m->nested[0]])
-    if (m->kind == MaterialKind::mask && m->weight.texture == none && !(max_component(m->weight.value) > 0))
-      return true;
-  return m->kind == MaterialKind::null;
-}
+bool is_open(const Scene& scene, const Shape& shape) { return shape.mask != none && is_open(scene, shape.mask); }
 
 }  // namespace ajar

@@ -5,9 +5,13 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include <utility>
+
 #include "ajar/accel/accel.h"
 #include "ajar/core/sampler.h"
+#include "ajar/scene/bsdf.h"
 #include "ajar/scene/build.h"
+#include "ajar/scene/geometry.h"
 
 namespace ajar {
 namespace {
@@ -145,17 +149,110 @@ TEST(CutOut, MasksInsideOfMapsAreMasks) {
   EXPECT_EQ(scene.materials[scene.shapes[0].material].map_scale, 7);
 }
 
+Material sum(MaterialKind kind, std::array<uint32_t, 4> nested) {
+  Material m;
+  m.kind = kind, m.nested = nested;
+  return m;
+}
+uint32_t blended(Scene& scene, uint32_t first, uint32_t second, const Slot& weight) {
+  Material m = sum(MaterialKind::blend, {first, second, none, none});
+  m.weight = weight;
+  return add_material(scene, m);
+}
+
+// 0.75 of a mask that stops 0.4, 0.25 of nothing; 0.2 of nothing, 0.4 of a mask that stops half, 0.3 of matter.
+TEST(CutOut, SumsLetPassByTheirWeights) {
+  Scene scene;
+  const uint32_t null = nothing(scene), grey = add_diffuse(scene, Rgb(0.5f));
+  const uint32_t blend = blended(scene, masked(scene, 0.4f, grey), null, 0.25f);
+  Material mixture = sum(MaterialKind::mixture, {null, masked(scene, 0.5f, grey), grey, none});
+  mixture.weights = {0.2f, 0.4f, 0.3f, 0};
+  const uint32_t mixed = add_material(scene, mixture);
+  add_quad(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, blend);
+  add_quad(scene, {2, 0, 0}, {1, 0, 0}, {0, 1, 0}, mixed);
+  add_quad(scene, {4, 0, 0}, {1, 0, 0}, {0, 1, 0}, masked(scene, 0.5f, blend));
+  for (int times = 1; times <= 2; ++times) {
+    finish(scene);
+    EXPECT_FLOAT_EQ(opacity(scene, 0, 0, {0.2f, 0.2f}), 0.3f);
+    EXPECT_FLOAT_EQ(opacity(scene, 1, 0, {0.2f, 0.2f}), 0.6f);
+    EXPECT_FLOAT_EQ(opacity(scene, 2, 0, {0.2f, 0.2f}), 0.15f);
+  }
+  const Accel accel(scene);
+  EXPECT_NEAR(stopped(accel, {0, 0}, {1, 1}), 0.3, 0.012);
+  EXPECT_NEAR(stopped(accel, {2, 0}, {3, 1}), 0.6, 0.012);
+  EXPECT_NEAR(stopped(accel, {4, 0}, {5, 1}), 0.15, 0.012);
+}
+
+// What is stopped scatters as much as the whole did beside what passed as a delta.
+TEST(CutOut, SumsKeepWhatTheyScatter) {
+  Scene scene;
+  const uint32_t null = nothing(scene), grey = add_diffuse(scene, Rgb(0.5f)), white = add_diffuse(scene, Rgb(0.9f));
+  Material mixture = sum(MaterialKind::mixture, {null, masked(scene, 0.5f, white), grey, none});
+  mixture.weights = {0.2f, 0.4f, 0.3f, 0};
+  const uint32_t mixed = add_material(scene, mixture);
+  const uint32_t blend =
+      blended(scene, blended(scene, null, grey, 0.7f), white, add_checkerboard(scene, Rgb(1), Rgb(0)));
+  for (const uint32_t material : {mixed, blend, masked(scene, 0.5f, mixed)})
+    add_quad(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, material);
+  finish(scene);
+  const auto at = [&](uint32_t shape, const Vec2& bary) {
+    Surface s;
+    s.shape = shape, s.bary = bary, s.uv = texture_point(scene, shape, 0, bary);
+    Bsdf bsdf;
+    resolve(scene, s, {0, 0, 1}, s.frame, bsdf);
+    return bsdf;
+  };
+  for (const Vec2& bary : {Vec2(0.1f, 0.2f), Vec2(0.1f, 0.7f)})
+    for (uint32_t i = 0; i < 3; ++i) {
+      const Bsdf cut = at(i, bary);
+      EXPECT_EQ(cut.opacity, 1);
+      EXPECT_EQ(cut.pass, 0);
+      EXPECT_FALSE(cut.has_delta);
+      const uint32_t mask = std::exchange(scene.shapes[i].mask, none), material = scene.shapes[i].material;
+      scene.shapes[i].material = mask;
+      const Bsdf whole = at(i, bary);
+      scene.shapes[i].mask = mask, scene.shapes[i].material = material;
+      const float stops = whole.opacity;
+      EXPECT_NEAR(opacity(scene, i, 0, bary), stops, 1e-6f);
+      const Vec3 up{0, 0, 1};
+      EXPECT_NEAR(stops * eval(cut, up, up, Mode::radiance).f.x, eval(whole, up, up, Mode::radiance).f.x, 1e-6f) << i;
+    }
+}
+
+// Materials may change between two frames.
+TEST(CutOut, SumsThatLoseTheirHolesAreSurfaces) {
+  Scene scene;
+  const uint32_t grey = add_diffuse(scene, Rgb(0.5f)), blend = blended(scene, nothing(scene), grey, 0.3f);
+  add_quad(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, blend);
+  finish(scene);
+  EXPECT_EQ(scene.shapes[0].mask, blend);
+  scene.materials[blend].nested[0] = grey;
+  finish(scene);
+  EXPECT_EQ(scene.shapes[0].mask, none);
+}
+
+TEST(CutOut, SumsOfNothingAreNotThere) {
+  Scene scene;
+  const uint32_t null = nothing(scene), grey = add_diffuse(scene, Rgb(0.5f));
+  add_sphere(scene, Vec3(0), 1, blended(scene, null, masked(scene, 0.0f, grey), 0.3f));
+  add_sphere(scene, Vec3(0), 1, blended(scene, null, grey, 0.3f));
+  finish(scene);
+  EXPECT_TRUE(is_open(scene, scene.shapes[0]));
+  EXPECT_FALSE(is_open(scene, scene.shapes[1]));
+}
+
 // Each side of a twosided material has holes of its own: they stay with it.
 TEST(CutOut, MasksOfOneSideAreNotCutOut) {
   Scene scene;
   Material m;
   m.kind = MaterialKind::twosided;
   m.nested[0] = masked(scene, 0.3f, add_diffuse(scene, Rgb(0.5f))), m.nested[1] = add_diffuse(scene, Rgb(0.5f));
-  const uint32_t sides = add_material(scene, m);
-  add_quad(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, sides);
+  const uint32_t sides = add_material(scene, m), blend = blended(scene, nothing(scene), sides, 0.3f);
+  for (const uint32_t material : {sides, blend}) add_quad(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, material);
   finish(scene);
-  EXPECT_EQ(scene.shapes[0].mask, none);
+  for (const Shape& shape : scene.shapes) EXPECT_EQ(shape.mask, none);
   EXPECT_EQ(scene.shapes[0].material, sides);
+  EXPECT_EQ(scene.shapes[1].material, blend);
 }
 
 TEST(CutOut, NothingIsNotThere) {

@@ -341,7 +341,7 @@ TEST(Weights, Textured) {
   expect_oracle(finished(std::move(scene)));
 }
 
-// What masks let pass, where they are part of a sum.
+// What masks let pass is a delta on lamps alone.
 uint32_t half_open(Scene& scene, uint32_t inner) {
   Material blend = of_kind(MaterialKind::blend);
   blend.weight = 0.6f;
@@ -351,7 +351,7 @@ uint32_t half_open(Scene& scene, uint32_t inner) {
 
 TEST(Weights, BentNormalsAndMasks) {
   Scene scene = stage();
-  add_mesh(scene, globe({0, -0.3f, 0.2f}, 0.5f, 6, 0.4f), half_open(scene, 0));
+  add_area_light(scene, add_mesh(scene, globe({0, -0.3f, 0.2f}, 0.5f, 6, 0.4f), half_open(scene, 0)), Rgb(0.3f));
   expect_oracle(finished(std::move(scene)));
 }
 
@@ -360,7 +360,8 @@ TEST(Weights, TwoFacedMask) {
   Scene scene = stage();
   Material faces = of_kind(MaterialKind::twosided);
   faces.nested[0] = add_diffuse(scene, Rgb(0.1f)), faces.nested[1] = add_diffuse(scene, Rgb(0.9f));
-  add_quad(scene, {-0.9f, -0.2f, 0.5f}, {1.8f, 0, 0}, {0, 0.2f, -1.3f}, half_open(scene, add_material(scene, faces)));
+  const uint32_t material = half_open(scene, add_material(scene, faces));
+  add_area_light(scene, add_mesh(scene, globe({0, -0.3f, 0.2f}, 0.5f, 6), material), Rgb(0.3f));
   expect_oracle(finished(std::move(scene)));
 }
 

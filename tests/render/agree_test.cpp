@@ -211,6 +211,22 @@ Scene with_masks() {
   return finished(std::move(scene));
 }
 
+// Holes in a part of what is summed up: a mask of glass beside metal, nothing beside matter.
+Scene with_holes_in_sums() {
+  Scene scene = stage();
+  Material mask = of_kind(MaterialKind::mask), blend = of_kind(MaterialKind::blend),
+           mixture = of_kind(MaterialKind::mixture);
+  mask.nested[0] = add_material(scene, rough(MaterialKind::roughdielectric, Microfacet::ggx, 0.3f, 0.3f));
+  mask.weight = checker(scene, 0.8f, 0.1f);
+  const uint32_t metal = add_material(scene, rough(MaterialKind::roughconductor, Microfacet::ggx, 0.3f, 0.3f));
+  blend.nested = {add_material(scene, mask), metal, none, none}, blend.weight = checker(scene, 0.2f, 0.7f);
+  add_quad(scene, {-0.7f, -0.9f, 0.3f}, {1.2f, 0, 0.1f}, {0, 1.1f, 0}, add_material(scene, blend));
+  const uint32_t null = add_material(scene, of_kind(MaterialKind::null));
+  mixture.nested = {null, add_diffuse(scene, {0.3f, 0.3f, 0.8f}), none, none}, mixture.weights = {0.4f, 0.5f, 0, 0};
+  add_mesh(scene, globe({0.4f, 0, -0.3f}, 0.4f, 6, 0.3f), add_material(scene, mixture));
+  return finished(std::move(scene));
+}
+
 // It shines where its mask lets light pass, too: there it is no cut-out.
 Scene with_masked_lamp() {
   Scene scene = stage();
@@ -345,6 +361,7 @@ const Feature features[] = {
     {"blend", [] { return with_blend(MaterialKind::blend); }},
     {"mixture", [] { return with_blend(MaterialKind::mixture); }},
     {"mask", with_masks},
+    {"mask_in_sum", with_holes_in_sums},
     {"mask_of_lamp", with_masked_lamp, "pb"},
     {"caustic", [] { return caustic(glass, false); }},
     {"caustic_of_point", [] { return caustic(glass, true); }, "blv"},

@@ -78,7 +78,8 @@ TEST(Furnace, InsideOfABlackEmissiveSphere) {
     expect_everywhere(furnace(Oven::sphere, Rgb(3), Rgb(0)), integrator, -1, Rgb(3));
 }
 
-// What absorbs nothing cannot be seen in front of an even sky. Lossless glass, mirror, pane, white matter and null.
+// What absorbs nothing cannot be seen in front of an even sky. Lossless glass, mirror, pane, white matter, null
+// and a blend of it.
 TEST(Furnace, LosslessObjectsVanish) {
   Scene scene;
   scene.filter = make_filter(FilterKind::box);
@@ -92,6 +93,10 @@ TEST(Furnace, LosslessObjectsVanish) {
   add_sphere(scene, {-0.6f, -0.6f, 0}, 0.5f, add_material(scene, mirror));
   add_sphere(scene, {0.6f, -0.6f, 0}, 0.5f, add_material(scene, pane));
   add_sphere(scene, {0, 0, 0.3f}, 0.3f, add_material(scene, nothing));
+  Material blend;
+  blend.kind = MaterialKind::blend, blend.weight = 0.6f;
+  blend.nested = {add_material(scene, nothing), add_material(scene, pane), none, none};
+  add_sphere(scene, {0, 0, 1}, 0.3f, add_material(scene, blend));
   scene.meshes[0].normals.clear();
   add_light(scene, LightKind::constant, Rgb(1, 2, 3));
   finish(scene);

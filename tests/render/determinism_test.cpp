@@ -251,5 +251,29 @@ TEST(Determinism, MasksInsideOfNormalMapsAreTheSame) {
   }
 }
 
+// A mask is a blend with nothing, and a mixture with it, and rays see no difference.
+TEST(Determinism, MasksAreBlendsWithNothing) {
+  const auto veil = [](MaterialKind kind) {
+    Scene scene = stage();
+    Material outer, nothing;
+    nothing.kind = MaterialKind::null;
+    outer.kind = kind, outer.weight = 0.5f, outer.weights = {0.5f, 0.5f, 0, 0};
+    if (kind != MaterialKind::mask) outer.nested[0] = add_material(scene, nothing);
+    outer.nested[kind == MaterialKind::mask ? 0 : 1] = add_diffuse(scene, {0.3f, 0.6f, 0.2f});
+    add_quad(scene, {-0.8f, 0.2f, -0.8f}, {1.6f, 0, 0}, {0, 0, 1.6f}, add_material(scene, outer));
+    finish(scene);
+    return scene;
+  };
+  const Scene mask = veil(MaterialKind::mask);
+  for (const char* integrator : {"path", "bdpt"}) {
+    const RenderOptions o = options_of(integrator, 4);
+    const std::vector<float> a = develop(rendered(mask, Accel(mask), o).film).pixels;
+    for (const MaterialKind kind : {MaterialKind::blend, MaterialKind::mixture}) {
+      const Scene other = veil(kind);
+      EXPECT_TRUE(same_bytes(a, develop(rendered(other, Accel(other), o).film).pixels)) << integrator;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace ajar

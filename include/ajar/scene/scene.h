@@ -66,7 +66,7 @@ struct Shape {
   bool tangents = true;  ///< hits get dpdu, dpdv and a frame turned to them; finish clears it where no bsdf asks
   uint32_t mesh = none;
   uint32_t material = 0;
-  uint32_t mask = none;  ///< what material was, where finish took masks off it (cutout.h)
+  uint32_t mask = none;  ///< what material was (or, of a sum, still is) with masks, where rays ask it (cutout.h)
   uint32_t light = none;
   uint32_t group = none;  ///< belongs to a shapegroup: seen only through instances
   Mat4 to_world{1};

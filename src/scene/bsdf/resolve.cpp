@@ -279,6 +279,15 @@ void settle_normals(const Frame& frame, Bsdf& out) {
   }
 }
 
+// What a cut-out lets pass was no surface to the ray: all of what it stops is for the lobes.
+void close_holes(Bsdf& out) {
+  float sum = 0;
+  for (int i = 0; i < out.count; ++i) sum += out.weights[i];
+  const float stopped = std::max(out.opacity, sum);  // sum may be less: mixtures absorb, black lobes are left out
+  for (int i = 0; i < out.count; ++i) out.weights[i] /= stopped;
+  out.opacity = 1;
+}
+
 }  // namespace
 
 void resolve(const Scene& scene, const Surface& surface, const Vec3& wo, Frame& frame, Bsdf& out) {
@@ -288,12 +297,14 @@ void resolve(const Scene& scene, const Surface& surface, const Vec3& wo, Frame& 
   out.bent = false;
   out.opacity = 1;
   out.pass = 0;
+  const Shape& shape = scene.shapes[surface.shape];
   Resolver r{scene, surface, frame, out, glm::dot(wo, surface.ng) < 0};
-  add(r, scene.shapes[surface.shape].material, 1);
+  add(r, shape.material, 1);
   if (r.turned) frame.t = -frame.t;
   if (r.split) settle_normals(frame, out);
   out.choice[0] = 1;
   out.opacity = std::max(out.opacity, 0.0f);
+  if (shape.mask != none && out.opacity < 1) close_holes(out);
   if (out.count != 1 || out.opacity < 1) choose(out);
 }
 
