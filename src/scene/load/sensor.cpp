@@ -154,6 +154,20 @@ void read_sampler(Loader& loader, const Node& node) {
   note_unused(p, {"id", "seed", "scramble", "dimension", "jitter"});
 }
 
+// Mitsuba 3's film for several sensors side by side.
+void load_batch(Loader& loader, const Node& node) {
+  Params p(loader, node);
+  const std::vector<const Node*> sensors = nested(p, "sensor");
+  unsupported(
+      loader, node,
+      "several sensors on one film are not supported: put one of those inside it in its place, with a film of its "
+      "own, and render the others by themselves",
+      "the first of them alone");
+  if (sensors.empty()) fail(loader, node, "holds no sensor; put <sensor type=\"perspective\"> in its place");
+  const Open open(loader, node);
+  load_sensor(loader, *sensors.front());
+}
+
 }  // namespace
 
 double tan_half_x(Params& p, Camera& camera) {
@@ -178,6 +192,7 @@ double shutter_open(Loader& loader, const Node& node) {
 }
 
 void load_sensor(Loader& loader, const Node& node) {
+  if (node.type == "batch") return load_batch(loader, node);
   Params p(loader, node);
   Camera& camera = loader.scene.camera;
   if (node.type == "perspective" || node.type == "thinlens" || node.type == "orthographic") {

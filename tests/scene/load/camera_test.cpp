@@ -201,6 +201,26 @@ TEST(Sensors, FirstOfSeveral) {
   EXPECT_SAYS(error("", "irradiancemeter"), "unknown sensor; supported: perspective, thinlens, orthographic");
 }
 
+TEST(Sensors, BatchesAreRefused) {
+  const std::string two =
+      film(20, 10) + "<sensor type='orthographic'>" + film(30, 20) + "</sensor>" + "<sensor type='perspective'/>";
+  EXPECT_EQ(
+      error(two, "batch"),
+      "test.xml:1: <sensor type=\"batch\">: several sensors on one film are not supported: put one of those inside it "
+      "in its place, with a film of its own, and render the others by themselves; with --lenient: the first of them "
+      "alone");
+  const Scene first = read(two, "batch", lenient());
+  EXPECT_EQ(first.camera.kind, CameraKind::orthographic);
+  EXPECT_EQ(first.camera.width, 30);
+  EXPECT_TRUE(says(first.notes, "the first of them alone"));
+  EXPECT_THROW(read("", "batch", lenient()), Error);
+  const auto of_itself = [] {
+    load_scene_text("<scene version='3.0.0'><sensor type='batch' id='b'><ref id='b'/></sensor></scene>", "", "test.xml",
+                    lenient());
+  };
+  EXPECT_THROW(of_itself(), Error);
+}
+
 // From before the scene, along z, so that its larger side just fits into 45 degrees.
 TEST(Sensors, WithoutOneAllIsSeen) {
   const auto load = [](const std::string& inside) {
