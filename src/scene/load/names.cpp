@@ -9,13 +9,15 @@ namespace {
 
 // Complex indices of refraction as linear RGB: measured spectra under the CIE 1931 functions and the sRGB matrix,
 // equal-energy weights. Measurements: Palik, Handbook of Optical Constants of Solids (1985, 1991); Johnson and
-// Christy 1972 (Ag, Au, Cu). Where a product of the matrix was below 0 it stands as 0.
+// Christy 1972 (Ag, Au, Cu); Zollner, Lin, Schönherr, Böhringer and Cardona 1989 (AlSb). Where a product of the matrix
+// was below 0 it stands as 0.
 constexpr Metal metals[] = {
     {"none", Rgb(0), Rgb(1)},  // mirrors everything
     {"a-C", {2.9441f, 2.2272f, 1.9682f}, {0.8874f, 0.7993f, 0.8153f}},
     {"Ag", {0.1553f, 0.1167f, 0.1384f}, {4.8283f, 3.1222f, 2.1470f}},
     {"Al", {1.6575f, 0.8804f, 0.5212f}, {9.2239f, 6.2695f, 4.8370f}},
     {"AlAs", {3.6051f, 3.2329f, 2.2176f}, {0.0007f, 0.0f, 0.0074f}},
+    {"AlSb", {4.5949f, 4.0692f, 4.5801f}, {0.0f, 0.0941f, 1.2997f}},
     {"Au", {0.1431f, 0.3750f, 1.4425f}, {3.9832f, 2.3857f, 1.6032f}},
     {"Be", {4.1851f, 3.1851f, 2.7841f}, {3.8354f, 3.0101f, 2.8690f}},
     {"Cr", {4.3697f, 2.9167f, 1.6547f}, {5.2064f, 4.2314f, 3.7549f}},

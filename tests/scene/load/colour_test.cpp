@@ -180,5 +180,37 @@ TEST(Colour, NamesOfSubstances) {
   EXPECT_EQ(find_metal("Unobtainium"), nullptr);
 }
 
+// The names that Mitsuba's documentation lists, each in the spellings with and without _palik that occur.
+TEST(Colour, AllMetalsOfMitsubaAreKnown) {
+  for (const char* name :
+       {"a-C",        "Ag",       "Al",         "AlAs",     "AlAs_palik", "AlSb",     "AlSb_palik", "Au",
+        "Be",         "Be_palik", "Cr",         "CsI",      "CsI_palik",  "Cu",       "Cu_palik",   "Cu2O",
+        "Cu2O_palik", "CuO",      "CuO_palik",  "d-C",      "d-C_palik",  "Hg",       "Hg_palik",   "HgTe",
+        "HgTe_palik", "Ir",       "Ir_palik",   "K",        "K_palik",    "Li",       "Li_palik",   "MgO",
+        "MgO_palik",  "Mo",       "Mo_palik",   "Na_palik", "Nb",         "Nb_palik", "Ni_palik",   "Rh",
+        "Rh_palik",   "Se",       "Se_palik",   "SiC",      "SiC_palik",  "SnTe",     "SnTe_palik", "Ta",
+        "Ta_palik",   "Te",       "Te_palik",   "ThF4",     "ThF4_palik", "TiC",      "TiC_palik",  "TiN",
+        "TiN_palik",  "TiO2",     "TiO2_palik", "VC",       "VC_palik",   "V_palik",  "VN",         "VN_palik",
+        "W",          "W_palik",  "none"})
+    EXPECT_NE(find_metal(name), nullptr) << name;
+}
+
+// Wavelength [um], n and k of Zollner et al. 1989, table of their measurement at 300 K.
+TEST(Colour, AlSbIsWhatWasMeasured) {
+  constexpr double measured[][3] = {
+      {0.3542, 3.95, 2.69},   {0.3647, 3.97, 2.64},  {0.3757, 4.14, 2.69},  {0.3875, 4.51, 2.47},
+      {0.3999, 4.57, 2.12},   {0.4133, 4.52, 1.97},  {0.4275, 4.66, 2.06},  {0.4428, 5.27, 1.58},
+      {0.4592, 5.08, 0.92},   {0.4769, 4.81, 0.63},  {0.4959, 4.61, 0.46},  {0.5166, 4.44, 0.33},
+      {0.5391, 4.31, 0.24},   {0.5636, 4.20, 0.01},  {0.5904, 4.01, 0.006}, {0.6199, 3.90, 0.004},
+      {0.6525, 3.81, 0.003},  {0.6888, 3.73, 0.002}, {0.7293, 3.66, 0.001}, {0.7749, 3.60, 0.0003},
+      {0.8266, 3.54, 0.0002}, {0.8856, 3.50, 0.0001}};
+  std::vector<std::pair<double, double>> n, k;
+  for (const auto& row : measured) n.emplace_back(1000 * row[0], row[1]), k.emplace_back(1000 * row[0], row[2]);
+  const Metal& metal = *find_metal("AlSb");
+  const Rgb eta = rgb_of_list(n, Colour::emission), extinction = rgb_of_list(k, Colour::emission);
+  EXPECT_RGB(metal.eta, eta.x, eta.y, eta.z, 1e-3);
+  EXPECT_RGB(metal.k, std::max(extinction.x, 0.0f), extinction.y, extinction.z, 1e-3);
+}
+
 }  // namespace
 }  // namespace ajar
