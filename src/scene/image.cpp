@@ -1,5 +1,9 @@
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
+#include <zlib.h>
+
+#include <array>
+#include <fstream>
 
 #include "ajar/core/error.h"
 #include "ajar/scene/texture.h"
@@ -64,12 +68,54 @@ void check_size(const std::string& path, const OIIO::ImageSpec& spec) {
                             spec.height, spec.nchannels, most_bytes >> 30));
 }
 
+bool take(std::ifstream& in, unsigned char* to, size_t n) {
+  return bool(in.read(reinterpret_cast<char*>(to), std::streamsize(n)));
+}
+
+uint32_t number_at(const unsigned char* p) {
+  return uint32_t(p[0]) << 24 | uint32_t(p[1]) << 16 | uint32_t(p[2]) << 8 | p[3];
+}
+
+// The kind of the chunk of a PNG file that was passed; empty at the end of the file.
+std::string pass_chunk(std::ifstream& in, const std::string& path) {
+  std::array<unsigned char, 8> head{};  // length and kind
+  if (!take(in, head.data(), 8)) return {};
+  const std::string kind(head.begin() + 4, head.end());
+  std::vector<unsigned char> piece(size_t(1) << 16);
+  uLong sum = crc32(0, head.data() + 4, 4);
+  for (size_t left = number_at(head.data()); left > 0;) {
+    const size_t n = std::min(left, piece.size());
+    if (!take(in, piece.data(), n)) throw Error(path + ": the image is cut off; copy it anew");
+    sum = crc32(sum, piece.data(), uInt(n));
+    left -= n;
+  }
+  if (!take(in, head.data(), 4)) throw Error(path + ": the image is cut off; copy it anew");
+  const bool needed = kind[0] >= 'A' && kind[0] <= 'Z';
+  if (needed && sum != number_at(head.data()))
+    throw Error(path + ": the image is damaged: a checksum in it is wrong; copy it anew");
+  return kind;
+}
+
+// libpng writes a line of its own to standard error where a file is damaged: most of those are found before it reads.
+void check_png(const std::string& path) {
+  constexpr std::array<unsigned char, 8> signature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+  std::ifstream in(path, std::ios::binary);
+  std::array<unsigned char, 8> head{};
+  if (!take(in, head.data(), head.size()) || head != signature) return;
+  bool has_data = false;
+  for (std::string kind; !(kind = pass_chunk(in, path)).empty() && kind != "IEND";) has_data |= kind == "IDAT";
+  if (!has_data) throw Error(path + ": the image is cut off; copy it anew");
+}
+
 template <class T>
 std::vector<T> read_all(const std::string& path, OIIO::ImageInput& input, const OIIO::ImageSpec& spec,
                         OIIO::TypeDesc type) {
   std::vector<T> values(size_t(spec.width) * size_t(spec.height) * size_t(spec.nchannels));
-  if (!input.read_image(0, 0, 0, spec.nchannels, type, values.data()) || input.has_error())
-    throw Error(fmt::format("{}: the image is damaged or cut off ({})", path, input.geterror()));
+  if (!input.read_image(0, 0, 0, spec.nchannels, type, values.data()) || input.has_error()) {
+    const std::string why = input.geterror();
+    throw Error(fmt::format("{}: the image is damaged or cut off{}; copy it anew", path,
+                            why.empty() ? "" : fmt::format(" ({})", why)));
+  }
   return values;
 }
 
@@ -116,6 +162,7 @@ void drop_idle_alpha(Image& image) {
 }  // namespace
 
 Image load_image(const std::string& path, bool raw, float gamma) {
+  check_png(path);
   OIIO::ImageSpec config;
   config.attribute("oiio:UnassociatedAlpha", 1);  // colours as they are stored
   const auto input = OIIO::ImageInput::open(path, &config);

@@ -112,8 +112,40 @@ TEST_F(ImageFile, DamagedFilesAreErrors) {
     const std::string path = write(name, 64, 64, 3, OIIO::TypeDesc::UINT8, noise,
                                    std::string(name) == "cut.exr" ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::UINT8);
     std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
+    testing::internal::CaptureStderr();
     EXPECT_THROW(load_image(path, false), Error) << name;
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << name;
   }
+}
+
+// Checksums tell, before libpng writes to standard error.
+TEST_F(ImageFile, DamagedPngsAreErrorsOfOneLine) {
+  const std::vector<uint8_t> grey(64 * 64 * 3, 77);
+  const std::string path = write("a.png", 64, 64, 3, OIIO::TypeDesc::UINT8, grey);
+  std::string bytes;
+  {
+    std::ifstream in(path, std::ios::binary);
+    bytes.assign(std::istreambuf_iterator<char>(in), {});
+  }
+  const size_t data = bytes.find("IDAT");
+  ASSERT_NE(data, bytes.npos);
+  const auto said = [&](const std::string& content) -> std::string {
+    std::ofstream(path, std::ios::binary) << content;
+    testing::internal::CaptureStderr();
+    std::string what;
+    try {
+      load_image(path, false);
+    } catch (const Error& e) {
+      what = e.what();
+    }
+    return what + testing::internal::GetCapturedStderr();
+  };
+  EXPECT_EQ(said(bytes), "");
+  std::string flipped = bytes;
+  flipped[data + 10] = char(flipped[data + 10] ^ 1);
+  EXPECT_EQ(said(flipped), path + ": the image is damaged: a checksum in it is wrong; copy it anew");
+  for (const size_t left : {size_t(12), size_t(20), data, data + 10})
+    EXPECT_EQ(said(bytes.substr(0, left)), path + ": the image is cut off; copy it anew") << left;
 }
 
 // The message says where.
