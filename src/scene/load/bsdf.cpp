@@ -48,10 +48,18 @@ void distribution(Params& p, Material& m) {
     note(p.loader, p.node, fmt::format("the {} distribution is rendered as beckmann of the same roughness", word));
 }
 
+// Surfaces are from 0 to 1; far beyond, the numbers of a lobe leave their range.
+void limit_width(Params& p, const char* name, const Slot& s) {
+  constexpr float widest = 100;
+  if (s.texture == none && max_component(s.value) > widest)
+    fail(p.loader, p.node, fmt::format("{} should be at most {}", name, widest));
+}
+
 // Microfacets are never smoother than min_alpha.
 Slot roughness(Params& p, const char* name, const Slot& otherwise) {
   Slot s = slot(p, {name}, otherwise, Colour::ratio);
   if (s.texture == none && !(luminance(s.value) > 0)) s.value = Rgb(min_alpha);
+  limit_width(p, name, s);
   return s;
 }
 
@@ -69,6 +77,7 @@ void diffuse(Params& p, Material& m) {
 void roughdiffuse(Params& p, Material& m) {
   diffuse(p, m);
   m.alpha_u = slot(p, {"alpha"}, 0.2f, Colour::ratio);
+  limit_width(p, "alpha", m.alpha_u);
   m.simple = boolean(p, "use_fast_approx", false);
 }
 
@@ -154,6 +163,7 @@ void ward(Params& p, Material& m) {
     const Slot s = slot(p, {name}, otherwise, Colour::ratio);
     if (s.texture == none && !(luminance(s.value) > 0))
       fail(p.loader, p.node, fmt::format("{} should be greater than 0", name));
+    limit_width(p, name, s);
     return s;
   };
   m.alpha_u = m.alpha_v = width("alpha", 0.1f);
@@ -364,7 +374,7 @@ uint32_t add_material(Loader& loader, const Node& node, const Material& material
   int size = 1;
   for (const uint32_t nested : material.nested)
     if (nested != none) size += loader.material_sizes[nested];
-  if (size > max_tree) fail(loader, node, fmt::format("is made of more than {} bsdfs", max_tree));
+  if (size > max_tree) fail(loader, node, fmt::format("is made of more than {} bsdfs; leave some out", max_tree));
   const uint32_t index = uint32_t(loader.scene.materials.size());
   loader.material_sizes.push_back(size);
   loader.scene.materials.push_back(material);

@@ -33,6 +33,15 @@ TEST(Bsdf, Diffuse) {
   EXPECT_NE(last(bsdf("diffuse", checker)).reflectance.texture, none);
 }
 
+// Numbers of lobes would leave their range.
+TEST(Bsdf, WidthsHaveALimit) {
+  for (const char* type : {"roughconductor", "roughdielectric", "roughplastic", "roughdiffuse", "ward"}) {
+    EXPECT_SAYS(error_of(bsdf(type, number("alpha", 1e30))), "alpha should be at most 100") << type;
+    EXPECT_EQ(error_of(bsdf(type, number("alpha", 100))), "") << type;
+  }
+  EXPECT_SAYS(error_of(bsdf("roughconductor", number("alphaV", 101))), "alpha_v should be at most 100");
+}
+
 TEST(Bsdf, Conductor) {
   Material m = last(bsdf("conductor", word("material", "Au")));
   EXPECT_EQ(m.kind, MaterialKind::conductor);
