@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <limits>
 #include <sstream>
@@ -12,13 +13,18 @@ namespace {
 double from_srgb(double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); }  // IEC 61966-2-1
 
 Rgb checked(Loader& loader, const Node& node, Rgb c, Colour kind) {
-  if (!is_finite(c)) fail(loader, node, "is beyond the range of numbers");
+  if (!is_finite(c)) fail(loader, node, "is beyond the range of numbers; take smaller ones");
+  const bool is_number = node.tag == "float" || node.tag == "integer" || node.tag == "string";
   if (std::min({c.x, c.y, c.z}) < 0) {
-    note(loader, node, "a colour outside the sRGB primaries: negative parts were set to 0");
+    note(loader, node,
+         is_number ? "a negative number: it was set to 0"
+                   : "a colour outside the sRGB primaries: negative parts were set to 0");
     c = glm::max(c, Rgb(0));
   }
   if (kind == Colour::reflectance && max_component(c) > 1) {
-    note(loader, node, "a reflectance above 1 would make light from nothing: it was set to 1");
+    note(loader, node,
+         is_number ? "a number above 1 where a share is meant: it was set to 1"
+                   : "a reflectance above 1 would make light from nothing: it was set to 1");
     c = glm::min(c, Rgb(1));
   }
   return c;
@@ -73,7 +79,7 @@ List pairs_of(const Loader& loader, const Node& node, std::string value) {
 
 List pairs_of_file(Loader& loader, const Node& node, const std::string& name) {
   const std::string path = find_file(loader.document, node, name);
-  if (path.empty()) fail(loader, node, fmt::format("there is no file \"{}\"", name.substr(0, 200)));
+  if (path.empty()) fail(loader, node, fmt::format("there is no file \"{}\"; correct the name", name.substr(0, 200)));
   count_file(loader, path);
   List list;
   std::istringstream lines(read_text(path));
@@ -93,7 +99,12 @@ Rgb of_list(Loader& loader, const Node& node, List list, Colour kind) {
   if (list.empty()) fail(loader, node, "holds no wavelengths");
   for (const auto& [nm, x] : list)
     if (!(nm > 0 && nm < 1e6) || !(std::abs(x) < 1e30)) fail(loader, node, fmt::format("{}:{} is out of range", nm, x));
-  return rgb_of_list(std::move(list), kind);
+  const bool bright = std::any_of(list.begin(), list.end(), [](const auto& pair) { return pair.second > 0; });
+  const Rgb c = rgb_of_list(std::move(list), kind);
+  if (bright && is_black(c))
+    note(loader, node,
+         "black, since nothing of it can be seen: wavelengths are in nm, and between two of them, 360 to 830");
+  return c;
 }
 
 Rgb plain_spectrum(Loader& loader, const Node& node, Colour kind) {

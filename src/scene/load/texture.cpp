@@ -9,6 +9,9 @@
 namespace ajar {
 namespace {
 
+// What a <spectrum> may be beside a texture.
+constexpr const char* constants[] = {"uniform", "d65",       "srgb",      "srgb_d65",
+                                     "regular", "irregular", "blackbody", "rawconstant"};
 constexpr const char* types[] = {"bitmap", "checkerboard", "gridtexture", "scale", "mesh_attribute", "vertexcolors"};
 
 // Affine map of (u, v): scale and offset (0.x), then the transform (2.x, 3.x).
@@ -146,8 +149,6 @@ uint32_t load_image_file(Loader& loader, const Node& node, const std::string& pa
 
 bool is_texture(const Node& node) {
   if (node.tag != "texture" && node.tag != "spectrum") return false;
-  static constexpr const char* constants[] = {"uniform", "d65",       "srgb",      "srgb_d65",
-                                              "regular", "irregular", "blackbody", "rawconstant"};
   if (node.type.empty()) return node.tag == "texture";
   return std::find(std::begin(constants), std::end(constants), node.type) == std::end(constants);
 }
@@ -156,16 +157,17 @@ uint32_t add_texture(Loader& loader, const Node& node, Texture&& texture) {
   int size = 1;
   for (const Slot* s : {&texture.color0, &texture.color1})
     if (s->texture != none) size += loader.texture_sizes[s->texture];
-  if (size > max_tree) fail(loader, node, fmt::format("is made of more than {} textures", max_tree));
+  if (size > max_tree) fail(loader, node, fmt::format("is made of more than {} textures; leave some out", max_tree));
   loader.texture_sizes.push_back(size);
   loader.scene.textures.push_back(std::move(texture));
   return uint32_t(loader.scene.textures.size() - 1);
 }
 
 void check_texture(Loader& loader, const Node& node) {
-  if (is_texture(node) && std::find(std::begin(types), std::end(types), node.type) == std::end(types))
-    unsupported(loader, node, fmt::format("unknown texture; supported: {}", fmt::join(types, ", ")),
-                "grey 0.5 in its place");
+  if (!is_texture(node) || std::find(std::begin(types), std::end(types), node.type) != std::end(types)) return;
+  const std::string plain = node.tag == "spectrum" ? fmt::format("{}, ", fmt::join(constants, ", ")) : "";
+  unsupported(loader, node, fmt::format("unknown {}; supported: {}{}", node.tag, plain, fmt::join(types, ", ")),
+              "grey 0.5 in its place");
 }
 
 uint32_t load_texture(Loader& loader, const Node& node, Colour kind) {

@@ -180,6 +180,26 @@ TEST(Colour, NamesOfSubstances) {
   EXPECT_EQ(find_metal("Unobtainium"), nullptr);
 }
 
+// Wavelengths in micrometres, or too close together to be met.
+TEST(Colour, WhatCannotBeSeenIsTold) {
+  const auto notes = [](const std::string& value) {
+    return load_inside("<bsdf type='diffuse'><spectrum name='reflectance' value='" + value + "'/></bsdf>").notes;
+  };
+  for (const char* value : {"0.4:1, 0.7:1", "900:1, 1000:1", "500.01:1, 500.02:1", "500:1"})
+    EXPECT_TRUE(says(notes(value), "<spectrum name=\"reflectance\">: black, since nothing of it can be seen")) << value;
+  for (const char* value : {"400:0, 700:0", "400:1, 700:1"}) EXPECT_FALSE(says(notes(value), "can be seen")) << value;
+}
+
+TEST(Colour, NumbersBeyondTheirRangeAreTold) {
+  const Scene s = load_inside(
+      "<bsdf type='blendbsdf'><float name='weight' value='5'/><bsdf type='diffuse'/><bsdf type='roughplastic'><float "
+      "name='alpha' value='-1'/></bsdf></bsdf>");
+  EXPECT_TRUE(says(s.notes, "<float name=\"weight\">: a number above 1 where a share is meant: it was set to 1"));
+  EXPECT_TRUE(says(s.notes, "<float name=\"alpha\">: a negative number: it was set to 0"));
+  EXPECT_SAYS(error_of("<bsdf type='diffuse'><spectrum name='reflectance' type='wild'/></bsdf>"),
+              "unknown spectrum; supported: uniform, d65");
+}
+
 // The names that Mitsuba's documentation lists, each in the spellings with and without _palik that occur.
 TEST(Colour, AllMetalsOfMitsubaAreKnown) {
   for (const char* name :
