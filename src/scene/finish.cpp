@@ -26,9 +26,26 @@ float farthest2(const Box& box, const Vec3& center) {
 
 bool is_mesh(const Shape& s) { return s.kind == ShapeKind::mesh; }
 
+// What reaches farthest, for a message.
+std::string name_of_farthest(const Scene& scene, const Boxes& boxes) {
+  float most = 0;
+  std::string name = "it";
+  const auto look = [&](const Box& box, const std::string& its_name) {
+    const float reach = box.empty() ? 0 : std::max(max_abs(box.lo), max_abs(box.hi));
+    if (reach <= most) return;
+    most = reach;
+    name = its_name;
+  };
+  for (size_t i = 0; i < boxes.shapes.size(); ++i)
+    if (scene.shapes[i].group == none) look(boxes.shapes[i], fmt::format("the shape \"{}\"", scene.shapes[i].name));
+  for (size_t i = 0; i < boxes.instances.size(); ++i) look(boxes.instances[i], fmt::format("instance {}", i));
+  return name;
+}
+
 // Bounding sphere about the middle of the bounding box. Meshes by their vertices, the rest by their boxes.
 void set_bounds(Scene& scene) {
-  const auto [shapes, instances, all] = boxes_of(scene);
+  const Boxes boxes = boxes_of(scene);
+  const auto& [shapes, instances, all] = boxes;
   scene.center = Vec3(0), scene.radius = 1;
   if (all.empty()) return;
   scene.center = all.lo * 0.5f + all.hi * 0.5f;
@@ -42,7 +59,8 @@ void set_bounds(Scene& scene) {
   for (const Box& b : instances) most = std::max(most, farthest2(b, scene.center));
   const float radius = std::sqrt(most) * 1.0001f + 1e-5f * max_abs(scene.center);
   if (!(radius < 1e18f) || !is_finite(scene.center))
-    throw Error("scene: it reaches farther than 1e18 units from its middle; check the transforms");
+    throw Error(fmt::format("scene: {} reaches farther than 1e18 units from the middle; check its transform",
+                            name_of_farthest(scene, boxes)));
   if (radius > 0) scene.radius = radius;
 }
 

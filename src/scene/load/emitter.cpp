@@ -10,7 +10,7 @@ constexpr const char* supported =
 
 DVec3 checked_direction(const Loader& loader, const Node& node, const DVec3& d) {
   const double length = glm::length(d);
-  if (!(length > 1e-30)) fail(loader, node, "its direction is the zero vector");
+  if (!(length > 1e-30)) fail(loader, node, "its direction is the zero vector; it should point somewhere");
   return d / length;
 }
 

@@ -18,8 +18,8 @@ void collect_ids(Loader& loader, const Node& node) {
       const auto [known, added] = loader.ids.emplace(child.id, &child);
       if (!added)
         fail(loader, child,
-             fmt::format("the id is taken already at {}:{}", loader.document.files[known->second->file],
-                         known->second->line));
+             fmt::format("the id is taken already at {}:{}; rename one of them",
+                         loader.document.files[known->second->file], known->second->line));
     }
     collect_ids(loader, child);
   }

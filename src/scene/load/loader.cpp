@@ -63,18 +63,22 @@ const Node& follow(const Loader& loader, const Node& node) {
   for (size_t steps = 0;; ++steps) {
     const auto alias = loader.document.aliases.find(id);
     if (alias == loader.document.aliases.end()) break;
-    if (steps > loader.document.aliases.size()) fail(loader, node, "its <alias> goes in a circle");
+    if (steps > loader.document.aliases.size())
+      fail(loader, node, "its <alias> goes in a circle; let one of them name an element");
     id = alias->second;
   }
   const auto found = loader.ids.find(id);
-  if (found == loader.ids.end()) fail(loader, node, fmt::format("nothing in the scene has the id \"{}\"", id));
+  if (found == loader.ids.end())
+    fail(loader, node,
+         fmt::format("nothing in the scene has the id \"{}\"; correct it, or add what it names", shortened(id)));
   return *found->second;
 }
 
 Open::Open(Loader& l, const Node& node) : loader(l) {
   if (std::find(loader.open.begin(), loader.open.end(), &node) != loader.open.end())
-    fail(loader, node, "contains itself");
-  if (loader.open.size() >= max_open) fail(loader, node, fmt::format("plugins are nested more than {} deep", max_open));
+    fail(loader, node, "contains itself; take away the reference that leads back to it");
+  if (loader.open.size() >= max_open)
+    fail(loader, node, fmt::format("plugins are nested more than {} deep; leave some out", max_open));
   loader.open.push_back(&node);
 }
 

@@ -104,21 +104,24 @@ void complete(Mesh& mesh, const MeshOptions& options, const std::string& name) {
     throw Error(fmt::format("{}: more than 2^32 - 2 vertices or triangles; split the mesh", name));
   for (const glm::uvec3& t : mesh.triangles)
     if (std::max(t.x, std::max(t.y, t.z)) >= mesh.positions.size())
-      throw Error(fmt::format("{}: triangle {} names a vertex beyond the last of {}", name, &t - mesh.triangles.data(),
-                              mesh.positions.size()));
+      throw Error(fmt::format("{}: triangle {} names a vertex beyond the last of {}; is the file whole?", name,
+                              &t - mesh.triangles.data(), mesh.positions.size()));
   const bool anew = options.max_smooth_angle >= 0;
   if (options.face_normals || anew) mesh.normals.clear();
   const bool own_normals = !mesh.normals.empty();
   for (Vec2& uv : mesh.uvs) {
     if (!std::isfinite(uv.x) || !std::isfinite(uv.y))
-      throw Error(fmt::format("{}: the texture coordinates of vertex {} are not finite", name, &uv - mesh.uvs.data()));
+      throw Error(fmt::format("{}: the texture coordinates of vertex {} are not finite; repair the mesh", name,
+                              &uv - mesh.uvs.data()));
     if (options.flip_v) uv.y = 1 - uv.y;
   }
   for (const Rgb& c : mesh.colors)
     if (!finite(c))
-      throw Error(fmt::format("{}: the colour of vertex {} is not finite", name, &c - mesh.colors.data()));
+      throw Error(
+          fmt::format("{}: the colour of vertex {} is not finite; repair the mesh", name, &c - mesh.colors.data()));
   for (const Vec3& p : mesh.positions)
-    if (!finite(p)) throw Error(fmt::format("{}: vertex {} is not finite", name, &p - mesh.positions.data()));
+    if (!finite(p))
+      throw Error(fmt::format("{}: vertex {} is not finite; repair the mesh", name, &p - mesh.positions.data()));
   for (Vec3& n : mesh.normals)
     if (!try_normalize(n)) n = Vec3(0);
 

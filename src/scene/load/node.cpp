@@ -46,6 +46,11 @@ std::string one_line(std::string text) {
   return text;
 }
 
+std::string shortened(const std::string& text) {
+  constexpr size_t most = 80;
+  return text.size() > most ? text.substr(0, most) + "..." : text;
+}
+
 const std::string* attribute(const Node& node, const char* name) {
   for (const auto& [key, value] : node.attributes)
     if (key == name) return &value;
@@ -53,10 +58,10 @@ const std::string* attribute(const Node& node, const char* name) {
 }
 
 std::string place(const Document& document, const Node& node) {
-  std::string element = "<" + node.tag;
-  if (!node.written.empty()) element += fmt::format(" type=\"{}\"", node.written);
-  if (!node.named.empty()) element += fmt::format(" name=\"{}\"", node.named);
-  if (!node.id.empty()) element += fmt::format(" id=\"{}\"", node.id);
+  std::string element = fmt::format("<{}", shortened(node.tag));
+  if (!node.written.empty()) element += fmt::format(" type=\"{}\"", shortened(node.written));
+  if (!node.named.empty()) element += fmt::format(" name=\"{}\"", shortened(node.named));
+  if (!node.id.empty()) element += fmt::format(" id=\"{}\"", shortened(node.id));
   return fmt::format("{}:{}: {}>", document.files[node.file], node.line, element);
 }
 

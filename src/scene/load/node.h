@@ -41,6 +41,8 @@ std::string read_text(const std::string& path);
 void count_text(Document& document, const std::string& text);
 /// A message without line breaks, whatever was quoted in it.
 std::string one_line(std::string text);
+/// The text, or the beginning of a long one: what a message shows of a name.
+std::string shortened(const std::string& text);
 /// The attribute's value, or nullptr.
 const std::string* attribute(const Node& node, const char* name);
 /// "scene.xml:41: <bsdf type="foo">", the beginning of every message about an element.

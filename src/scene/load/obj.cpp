@@ -117,7 +117,8 @@ struct VertexTable {
 void check_range(const ObjFile& in, const Face& face, const Corner& c) {
   const auto check = [&](uint32_t i, size_t n, const char* what) {
     if (i != none && i >= n)
-      throw Error(fmt::format("{}:{}: f names {} {} of {}", in.name, face.line, what, uint64_t(i) + 1, n));
+      throw Error(
+          fmt::format("{}:{}: f names {} {} of {}; is the file whole?", in.name, face.line, what, uint64_t(i) + 1, n));
   };
   check(c.v, in.v.size(), "v");
   check(c.vt, in.vt.size(), "vt");

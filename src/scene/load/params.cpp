@@ -36,10 +36,20 @@ const std::string& value_of(const Loader& loader, const Node& node) {
   return *value;
 }
 
+// Whether it is spelt as a number, but is too large for one.
+bool is_huge(std::string_view text) {
+  text = trimmed(text);
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double x = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
+  return error == std::errc::result_out_of_range && end == text.data() + text.size();
+}
+
 double checked(const Loader& loader, const Node& node, std::string_view value) {
   const std::optional<double> x = to_number(value);
-  if (!x) fail(loader, node, fmt::format("\"{}\" is not a number{}", value.substr(0, 80), about_suffix(value)));
-  if (std::abs(*x) > std::numeric_limits<float>::max())
+  if (!x && !is_huge(value))
+    fail(loader, node, fmt::format("\"{}\" is not a number{}", value.substr(0, 80), about_suffix(value)));
+  if (!x || std::abs(*x) > std::numeric_limits<float>::max())
     fail(loader, node, fmt::format("{} is beyond the range of numbers; rescale the scene", value.substr(0, 80)));
   return *x;
 }
@@ -203,8 +213,8 @@ std::string file(Params& params, const char* name) {
   const std::string path = find_file(params.loader.document, *node, value);
   if (path.empty())
     fail(params.loader, *node,
-         fmt::format("there is no file \"{}\" in {}", value.substr(0, 200),
-                     fmt::join(params.loader.document.folders, " or ")));
+         fmt::format("there is no file \"{}\" in {}; correct the name, or add its folder with <path value=\"...\"/>",
+                     value.substr(0, 200), fmt::join(params.loader.document.folders, " or ")));
   count_file(params.loader, path);
   return path;
 }

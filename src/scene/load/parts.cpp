@@ -37,7 +37,7 @@ std::vector<Part> parts_by_name(Params& p) {
 std::vector<Part> parts_of(Params& p) {
   const std::vector<const Node*> bsdfs = nested(p, "bsdf");
   if (bsdfs.size() > 1 && p.node.type == "obj") return parts_by_name(p);
-  if (bsdfs.size() > 1) fail(p.loader, p.node, "has more than one bsdf");
+  if (bsdfs.size() > 1) fail(p.loader, p.node, "has more than one bsdf; keep one of them");
   return with_rest(p, {}, bsdfs.empty() ? nullptr : bsdfs.front());
 }
 

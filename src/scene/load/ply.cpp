@@ -37,7 +37,7 @@ struct Body {
 
   template <class T>
   double binary() {
-    if (size_t(end - p) < sizeof(T)) fail("the file ends here");
+    if (size_t(end - p) < sizeof(T)) fail("the file ends here; is it whole?");
     std::array<char, sizeof(T)> raw;
     std::memcpy(raw.data(), p, sizeof(T));
     if constexpr (F == PlyFormat::big) std::reverse(raw.begin(), raw.end());
@@ -48,7 +48,7 @@ struct Body {
   double ascii() {
     const auto blank = [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
     while (p != end && blank(*p)) ++p;
-    if (p == end) fail("the file ends here");
+    if (p == end) fail("the file ends here; is it whole?");
     double value;
     const char* rest = read_number(p, end, value);
     if (rest == p || (rest != end && !blank(*rest))) {
@@ -98,14 +98,15 @@ struct Body {
 
   size_t take_length(const PlyProperty& list) {
     const size_t n = take_integer(*list.length, size_t(1) << 32, "list length");
-    if (n > bytes_left() / least(list.type)) fail(fmt::format("a list of {} entries, but the file ends before", n));
+    if (n > bytes_left() / least(list.type))
+      fail(fmt::format("a list of {} entries, but the file ends before; is it whole?", n));
     return n;
   }
 
   void skip(const PlyProperty& property) {
     size_t n = property.length ? take_length(property) : 1;
     if constexpr (F != PlyFormat::ascii) {
-      if (n > bytes_left() / size_of(property.type)) fail("the file ends here");
+      if (n > bytes_left() / size_of(property.type)) fail("the file ends here; is it whole?");
       p += n * size_of(property.type);
     } else {
       for (; n > 0; --n) ascii();
@@ -219,7 +220,8 @@ Mesh read_body(const PlyHeader& header, const char* p, const char* end, const st
     const std::span corners(polygons.corners.data() + begin, polygons.ends[f] - begin);
     for (const uint32_t i : corners)
       if (i >= mesh.positions.size())
-        throw Error(fmt::format("{}: face {} names vertex {} of {}", file, f, i, mesh.positions.size()));
+        throw Error(
+            fmt::format("{}: face {} names vertex {} of {}; is the file whole?", file, f, i, mesh.positions.size()));
     add_polygon(mesh, corners);
     for (size_t k = 0; k < polygons.attributes.size(); ++k)
       mesh.attributes[of_faces + k].values.resize(mesh.triangles.size(), polygons.attributes[k].values[f]);

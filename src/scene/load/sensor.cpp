@@ -94,11 +94,12 @@ double tan_half_view(Params& p, Camera& camera) {
 // Splits a camera's transform into scale along its axes and a rigid rest, which may be mirrored.
 DVec3 take_scale(Params& p, DMat4& m) {
   const DVec3 scale{glm::length(DVec3(m[0])), glm::length(DVec3(m[1])), glm::length(DVec3(m[2]))};
-  if (!(std::min({scale.x, scale.y, scale.z}) > 1e-30)) fail(p.loader, p.node, "its to_world is singular");
+  if (!(std::min({scale.x, scale.y, scale.z}) > 1e-30))
+    fail(p.loader, p.node, "its to_world is singular; scale every axis by more than 0");
   const DVec3 z = DVec3(m[2]) / scale.z;
   DVec3 y = DVec3(m[1]) / scale.y, x = DVec3(m[0]) / scale.x;
   if (std::abs(glm::dot(x, y)) > 1e-3 || std::abs(glm::dot(y, z)) > 1e-3 || std::abs(glm::dot(z, x)) > 1e-3)
-    fail(p.loader, p.node, "its to_world is sheared");
+    fail(p.loader, p.node, "its to_world is sheared; axes should be at right angles");
   y = glm::normalize(y - z * glm::dot(y, z));  // the digits of a text file are not exactly at right angles
   x = glm::normalize(x - z * glm::dot(x, z) - y * glm::dot(x, y));
   m[0] = DMat4::col_type(x, 0);

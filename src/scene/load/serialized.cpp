@@ -63,7 +63,8 @@ struct Inflater {
       out += got, n -= got;
       if (n == 0) break;
       if (result == Z_DATA_ERROR || result == Z_NEED_DICT || result == Z_MEM_ERROR)
-        throw Error(fmt::format("{}: the compressed data are damaged ({})", name, stream.msg ? stream.msg : "zlib"));
+        throw Error(fmt::format("{}: the compressed data are damaged ({}); copy the file anew", name,
+                                stream.msg ? stream.msg : "zlib"));
       if (result == Z_STREAM_END || (got == 0 && stream.avail_in == 0 && left.empty()))
         throw Error(name + ": the compressed data end before the mesh does; is the file whole?");
     }
@@ -101,7 +102,8 @@ struct Inflater {
 uint16_t check_header(std::span<const std::byte> bytes, size_t at, const std::string& name) {
   if (at + header_size > bytes.size()) throw Error(name + ": too short for a serialized mesh; is the file whole?");
   if (load<uint16_t>(bytes, at) != magic)
-    throw Error(fmt::format("{}: no serialized mesh at byte {} (0x041c is expected there)", name, at));
+    throw Error(fmt::format(
+        "{}: no serialized mesh at byte {} (0x041c is expected there); is it a serialized file, and whole?", name, at));
   const uint16_t version = load<uint16_t>(bytes, at + 2);
   if (version != 3 && version != 4)
     throw Error(fmt::format("{}: serialized format {}; versions 3 and 4 are supported", name, version));

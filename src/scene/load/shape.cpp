@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ajar/core/error.h"
+#include "ajar/scene/geometry.h"
 #include "obj.h"
 #include "parts.h"
 
@@ -26,7 +27,7 @@ void repair_flat(DMat4& m) {
 void check_invertible(const Loader& loader, const Node& node, const DMat4& m) {
   const double size = glm::length(DVec3(m[0])) * glm::length(DVec3(m[1])) * glm::length(DVec3(m[2]));
   if (!(size > 1e-90) || !(std::abs(determinant(m)) > 1e-14 * size))
-    fail(loader, node, "its to_world is singular: it flattens the shape");
+    fail(loader, node, "its to_world is singular: it flattens the shape; scale every axis by more than 0");
   const Mat4 inverse = Mat4(glm::inverse(m));
   for (int i = 0; i < 4; ++i)
     if (!is_finite(Vec3(inverse[i]))) fail(loader, node, "its to_world is beyond the range of numbers");
@@ -104,7 +105,7 @@ void cylinder(Params& p, Shape& shape, const Part&) {
   const DVec3 p0 = from == nullptr ? DVec3(0) : vector_of(p.loader, *from, 0);
   const DVec3 p1 = to == nullptr ? DVec3(0, 0, 1) : vector_of(p.loader, *to, 0);
   const double radius = positive(p, "radius", 1), length = glm::length(p1 - p0);
-  if (!(length > 0)) fail(p.loader, p.node, "p0 and p1 are the same point");
+  if (!(length > 0)) fail(p.loader, p.node, "p0 and p1 are the same point; move one of them");
   const DVec3 z = (p1 - p0) / length;
   const DVec3 x = glm::normalize(std::abs(z.x) < 0.8 ? glm::cross(DVec3(1, 0, 0), z) : glm::cross(DVec3(0, 1, 0), z));
   DMat4 local(1);
@@ -249,7 +250,8 @@ void refuse_media(Params& p) {
 }
 
 void load_instance(Loader& loader, const Node& node, uint32_t group) {
-  if (group != none) fail(loader, node, "an instance inside a shapegroup is not supported");
+  if (group != none)
+    fail(loader, node, "an instance inside a shapegroup is not supported; put the shapes that it shows there");
   Params p(loader, node);
   const std::vector<const Node*> groups = nested(p, "shape");
   if (groups.size() != 1 || groups.front()->type != "shapegroup")
@@ -269,6 +271,15 @@ void note_empty(Params& p, const Part& part) {
   note(p.loader, p.node, fmt::format("{} has no faces{}: left out", text(p, "filename", ""), of));
 }
 
+// Whether a mesh that emits has somewhere to do so.
+bool has_area(const Scene& scene, const Shape& shape) {
+  if (shape.kind != ShapeKind::mesh) return true;
+  const Mesh& mesh = scene.meshes[shape.mesh];
+  for (uint32_t i = 0; i < mesh.triangles.size(); ++i)
+    if (triangle_area(mesh, i) > 0) return true;
+  return false;
+}
+
 void load_part(Params& p, void (*read)(Params&, Shape&, const Part&), const Part& part, uint32_t group) {
   Loader& loader = p.loader;
   Shape shape;
@@ -278,8 +289,9 @@ void load_part(Params& p, void (*read)(Params&, Shape&, const Part&), const Part
   read(p, shape, part);
   refuse_media(p);
   const std::vector<const Node*> emitters = nested(p, "emitter");
-  if (emitters.size() > 1) fail(loader, p.node, "has more than one emitter");
-  if (!emitters.empty() && group != none) fail(loader, p.node, "a light inside a shapegroup is not supported");
+  if (emitters.size() > 1) fail(loader, p.node, "has more than one emitter; keep one of them");
+  if (!emitters.empty() && group != none)
+    fail(loader, p.node, "a light inside a shapegroup is not supported; put the shape beside the group");
   shape.material = material_of(p, part, !emitters.empty());
   if (shape.kind == ShapeKind::mesh && loader.scene.meshes[shape.mesh].triangles.empty()) {
     note_empty(p, part);
@@ -288,6 +300,8 @@ void load_part(Params& p, void (*read)(Params&, Shape&, const Part&), const Part
   }
   loader.scene.shapes.push_back(std::move(shape));
   if (!emitters.empty()) load_emitter(loader, *emitters.front(), uint32_t(loader.scene.shapes.size() - 1));
+  if (!emitters.empty() && !has_area(loader.scene, loader.scene.shapes.back()))
+    note(loader, p.node, "its faces have no area: it emits nothing");
   check_attributes(loader, p.node, loader.scene.shapes.back());
 }
 
@@ -300,14 +314,16 @@ uint32_t load_shape_group(Loader& loader, const Node& node) {
   const uint32_t group = loader.scene.groups++;
   loader.groups.emplace(&node, group);
   Params p(loader, node);
-  for (const Node* shape : nested(p, "shape")) load_shape(loader, *shape, group);
+  const std::vector<const Node*> shapes = nested(p, "shape");
+  if (shapes.empty()) note(loader, node, "holds no shapes: nothing is seen of it");
+  for (const Node* shape : shapes) load_shape(loader, *shape, group);
   finish(p);
   return group;
 }
 
 void load_shape(Loader& loader, const Node& node, uint32_t group) {
   if (node.type == "shapegroup") {
-    if (group != none) fail(loader, node, "a shapegroup inside a shapegroup is not supported");
+    if (group != none) fail(loader, node, "a shapegroup inside a shapegroup is not supported; put its shapes there");
     load_shape_group(loader, node);
     return;
   }

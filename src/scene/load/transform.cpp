@@ -29,6 +29,9 @@ DVec3 point_attribute(const Loader& loader, const Node& node, const char* name) 
   if (!list || list->size() != 3)
     fail(loader, node,
          fmt::format("{}=\"{}\" should be three numbers{}", name, value->substr(0, 80), about_suffix(*value)));
+  for (const double x : *list)
+    if (std::abs(x) > std::numeric_limits<float>::max())
+      fail(loader, node, fmt::format("{} is beyond the range of numbers; rescale the scene", name));
   return {(*list)[0], (*list)[1], (*list)[2]};
 }
 
@@ -45,13 +48,14 @@ DVec3 usual_up(const DVec3& z, bool old) {
 DMat4 lookat_of(const Loader& loader, const Node& node) {
   const DVec3 origin = point_attribute(loader, node, "origin"), target = point_attribute(loader, node, "target");
   const DVec3 view = target - origin;
-  if (!(glm::dot(view, view) > 0)) fail(loader, node, "origin and target are the same point");
+  if (!(glm::dot(view, view) > 0)) fail(loader, node, "origin and target are the same point; move one of them");
   const DVec3 z = glm::normalize(view);
   DVec3 up(0);
   if (attribute(node, "up") != nullptr) up = point_attribute(loader, node, "up");
   if (!(glm::dot(up, up) > 0)) up = usual_up(z, loader.document.old);
   const DVec3 left = glm::cross(up, z);
-  if (!(glm::dot(left, left) > 1e-16 * glm::dot(up, up))) fail(loader, node, "up points along the line of sight");
+  if (!(glm::dot(left, left) > 1e-16 * glm::dot(up, up)))
+    fail(loader, node, "up points along the line of sight; take another one, or leave it out");
   const DVec3 x = glm::normalize(left);
   DMat4 m(1);
   m[0] = {x, 0};
@@ -84,8 +88,9 @@ DMat4 affine_of(const Loader& loader, const Node& node) {
   DMat4 m = transform_of(loader, node);
   const double w = m[3][3];
   for (int column = 0; column < 3; ++column)
-    if (std::abs(m[column][3]) > 1e-6 * std::abs(w)) fail(loader, node, "is projective; Ajar takes affine ones");
-  if (!(std::abs(w) > 0)) fail(loader, node, "is singular");
+    if (std::abs(m[column][3]) > 1e-6 * std::abs(w))
+      fail(loader, node, "is projective; Ajar takes affine ones, whose last row is 0 0 0 1");
+  if (!(std::abs(w) > 0)) fail(loader, node, "is singular; the last number of a matrix should be 1");
   if (w != 1) m = m * (1 / w);
   return m;
 }
@@ -166,7 +171,7 @@ DMat4 transform_of(const Loader& loader, const Node& node) {
   for (int column = 0; column < 4; ++column)
     for (int row = 0; row < 4; ++row)
       if (!(std::abs(m[column][row]) <= std::numeric_limits<float>::max()))
-        fail(loader, node, "its product is beyond the range of numbers");
+        fail(loader, node, "its product is beyond the range of numbers; use smaller factors");
   return m;
 }
 

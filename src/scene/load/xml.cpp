@@ -52,8 +52,18 @@ uint32_t line_at(const Source& s, ptrdiff_t offset) {
 }
 
 [[noreturn]] void fail(const Reader& r, const Source& s, const pugi::xml_node& node, const std::string& text) {
-  throw Error(one_line(
-      fmt::format("{}:{}: <{}>: {}", r.document.files[s.file], line_at(s, node.offset_debug()), node.name(), text)));
+  throw Error(one_line(fmt::format("{}:{}: <{}>: {}", r.document.files[s.file], line_at(s, node.offset_debug()),
+                                   shortened(node.name()), text)));
+}
+
+// What is wrong with a file as a whole is told with the element that names it.
+template <class F>
+auto told_at(const Reader& r, const Source& s, const pugi::xml_node& node, const F& f) {
+  try {
+    return f();
+  } catch (const Error& error) {
+    fail(r, s, node, error.what());
+  }
 }
 
 std::string known_parameters(const Reader& r) {
@@ -67,15 +77,36 @@ void parse(const Document& document, pugi::xml_document& xml, const Source& s, c
   if (result.status == pugi::status_no_document_element || s.text.find_first_not_of(" \t\r\n") == std::string::npos)
     throw Error(fmt::format("{}: holds no XML element; a scene begins with <scene version=\"3.0.0\">", name));
   if (!result)
-    throw Error(fmt::format("{}:{}: not well-formed XML: {}", document.files[s.file], line_at(s, result.offset),
-                            result.description()));
+    throw Error(one_line(fmt::format("{}:{}: not well-formed XML: {}; repair what stands there", document.files[s.file],
+                                     line_at(s, result.offset), result.description())));
+}
+
+// UTF-16, which some editors write, as UTF-8.
+std::string to_utf8(const std::string& bytes) {
+  const bool little = bytes.starts_with("\xff\xfe"), big = bytes.starts_with("\xfe\xff");
+  if (!little && !big) return bytes;
+  std::wstring wide;
+  for (size_t i = 2; i + 1 < bytes.size(); i += 2) {
+    const auto byte = [&](size_t k) { return uint32_t(static_cast<unsigned char>(bytes[i + k])); };
+    const uint32_t unit = byte(big ? 1 : 0) | byte(big ? 0 : 1) << 8;
+    const bool second = unit >> 10 == 0xdc00 >> 10 && !wide.empty() && uint32_t(wide.back()) >> 10 == 0xd800 >> 10;
+    if (second)
+      wide.back() = wchar_t(0x10000 + ((uint32_t(wide.back()) & 0x3ff) << 10 | (unit & 0x3ff)));
+    else
+      wide.push_back(wchar_t(unit));
+  }
+  return pugi::as_utf8(wide);
+}
+
+std::string expand(const std::string& text, const std::string& folder, const std::string& name) {
+  return expand_entities(to_utf8(text), folder, name);
 }
 
 void look_ahead(Reader& r, const pugi::xml_node& xml, int depth);
 void look_ahead(Reader& r, const std::string& path, int depth) {
   pugi::xml_document included;
   try {
-    const std::string text = expand_entities(read_text(path), fs::path(path).parent_path().string(), path);
+    const std::string text = expand(read_text(path), fs::path(path).parent_path().string(), path);
     if (included.load_buffer(text.data(), text.size())) look_ahead(r, included.document_element(), depth);
   } catch (const Error&) {
   }
@@ -121,6 +152,7 @@ std::string substitute(Reader& r, const Source& s, const pugi::xml_node& node, c
       size_t n = 0;
       while (n < rest.size() && (std::isalnum(static_cast<unsigned char>(rest[n])) != 0 || rest[n] == '_')) ++n;
       const std::string name(rest.substr(0, n));
+      if (name.empty()) fail(r, s, node, "a $ begins the name of a parameter, and none follows; leave it out");
       fail(
           r, s, node,
           fmt::format("the parameter ${} has no value: give -D {}=VALUE or write <default name=\"{}\" value=\"...\"/>; "
@@ -181,20 +213,23 @@ void read_default(Reader& r, const Source& s, const pugi::xml_node& xml, const N
 void read_include(Reader& r, const Source& s, const pugi::xml_node& xml, const Node& node, Node& into, int depth) {
   const std::string& name = need(r, s, xml, node, "filename");
   const std::string path = find_file(r.document, node, name);
-  if (path.empty()) fail(r, s, xml, fmt::format("there is no file {}", name));
+  if (path.empty())
+    fail(r, s, xml,
+         fmt::format("there is no file \"{}\" in {}; correct the name, or add its folder with <path value=\"...\"/>",
+                     name.substr(0, 200), fmt::join(r.document.folders, " or ")));
   std::error_code ignored;
   const std::string canonical = fs::weakly_canonical(path, ignored).string();
   if (std::find(r.including.begin(), r.including.end(), canonical) != r.including.end())
-    fail(r, s, xml, fmt::format("{} includes itself", name));
+    fail(r, s, xml, fmt::format("{} includes itself; leave this out", name));
   if (int(r.including.size()) > max_include_depth)
     fail(r, s, xml, fmt::format("files include each other more than {} deep", max_include_depth));
   const std::string folder = fs::path(path).parent_path().string();
-  const std::string text = expand_entities(read_text(path), folder, path);
+  const std::string text = told_at(r, s, xml, [&] { return expand(read_text(path), folder, path); });
   count_text(r.document, text);
   r.document.files.push_back(path);
   const Source inner = make_source(text, uint32_t(r.document.files.size() - 1), folder);
   pugi::xml_document parsed;
-  parse(r.document, parsed, inner, path);
+  told_at(r, s, xml, [&] { parse(r.document, parsed, inner, path); });
   r.including.push_back(canonical);
   const pugi::xml_node root = parsed.document_element();
   if (std::string_view(root.name()) == "scene") {
@@ -222,7 +257,8 @@ void read_path(Reader& r, const Source& s, const pugi::xml_node& xml, const Node
 }
 
 void read_children(Reader& r, const Source& s, const pugi::xml_node& xml, Node& into, int depth) {
-  if (depth > max_depth) fail(r, s, xml, fmt::format("elements are nested more than {} deep", max_depth));
+  if (depth > max_depth)
+    fail(r, s, xml, fmt::format("elements are nested more than {} deep; is an end tag missing?", max_depth));
   for (const pugi::xml_node& child : xml.children()) {
     if (child.type() != pugi::node_element) continue;
     Node node = make_node(r, s, child);
@@ -248,7 +284,7 @@ Document read_document(const std::string& text, const std::string& folder, const
   Document document;
   document.files.push_back(name);
   document.folders.push_back(folder.empty() ? "." : folder);
-  const std::string expanded = expand_entities(text, document.folders.front(), name);
+  const std::string expanded = expand(text, document.folders.front(), name);
   count_text(document, expanded);
   const Source source = make_source(expanded, 0, document.folders.front());
   pugi::xml_document xml;

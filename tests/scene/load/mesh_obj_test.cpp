@@ -152,9 +152,9 @@ TEST(MeshObj, errors_name_file_line_and_culprit) {
   EXPECT_NE(error_of("vt nan 0").find("a.obj:1: a coordinate of vt is not finite"), std::string::npos);
   EXPECT_NE(error_of("vt").find("a.obj:1: vt has no"), std::string::npos);
   EXPECT_NE(error_of("vn 1 2").find("a.obj:1: vn has 2"), std::string::npos);
-  EXPECT_EQ(error_of(three + "\nf 1 2 4\n"), "a.obj:5: f names v 4 of 3");
-  EXPECT_EQ(error_of(three + "f 1/1 2/1 3/1\n"), "a.obj:4: f names vt 1 of 0");
-  EXPECT_EQ(error_of(three + "f 1//9 2//1 3//1\n"), "a.obj:4: f names vn 9 of 0");
+  EXPECT_EQ(error_of(three + "\nf 1 2 4\n"), "a.obj:5: f names v 4 of 3; is the file whole?");
+  EXPECT_EQ(error_of(three + "f 1/1 2/1 3/1\n"), "a.obj:4: f names vt 1 of 0; is the file whole?");
+  EXPECT_EQ(error_of(three + "f 1//9 2//1 3//1\n"), "a.obj:4: f names vn 9 of 0; is the file whole?");
   EXPECT_EQ(error_of(three + "f 1 2 0\n"), "a.obj:4: \"0\": there is no such v; 3 so far");
   EXPECT_EQ(error_of(three + "f 1 2 -4\n"), "a.obj:4: \"-4\": there is no such v; 3 so far");
   for (const char* f : {"f a b c", "f 1 2 3x", "f 1.5 2 3", "f 1 2 3/1/1/1", "f 1 2 99999999999999999999", "f 1 2 ++3"})

@@ -178,6 +178,15 @@ TEST(Shapes, GroupsAndInstances) {
   EXPECT_SAYS(error_of(shape("shapegroup", shape("sphere", light))), "light inside a shapegroup");
 }
 
+TEST(Shapes, WhatShowsNothingIsTold) {
+  EXPECT_TRUE(says(load_inside("<shape type='shapegroup'/>").notes, "holds no shapes: nothing is seen of it"));
+  const std::string flat = "<transform name='to_world'><scale value='1e-30'/></transform>";
+  EXPECT_TRUE(says(load_inside("<shape type='rectangle'>" + flat + "<emitter type='area'/></shape>").notes,
+                   "its faces have no area: it emits nothing"));
+  EXPECT_FALSE(says(load_inside("<shape type='rectangle'><emitter type='area'/></shape>").notes, "no area"));
+  EXPECT_FALSE(says(load_inside("<shape type='sphere'><emitter type='area'/></shape>").notes, "no area"));
+}
+
 TEST(Shapes, Merge) {
   const Scene s = load_inside(shape("merge", shape("cube") + shape("sphere")));
   EXPECT_EQ(s.shapes.size(), 2u);
@@ -215,6 +224,14 @@ TEST(Shapes, UnknownOnes) {
 }
 
 TEST(Shapes, FarAwayIsAnError) {
+  const std::string move = "<transform name='to_world'><translate x='1e30'/></transform>";
+  EXPECT_SAYS(error_of(shape("sphere", "") + shape("sphere", "<point name='center' x='1e30'/>")),
+              "test.xml: scene: the shape \"sphere:2\" reaches farther than 1e18 units");
+  EXPECT_SAYS(error_of(shape("sphere", "") + "<shape type='cube' id='great'>" + move + "</shape>"),
+              "scene: the shape \"great\" reaches farther");
+  EXPECT_SAYS(error_of("<shape type='shapegroup' id='g'>" + shape("cube", "") + "</shape>" +
+                       shape("instance", "<ref id='g'/>" + move)),
+              "scene: instance 0 reaches farther");
   EXPECT_NE(error_of(shape("sphere", "<point name='center' x='3e38'/>")), "");
   EXPECT_NE(
       error_of(shape("cube", "<transform name='to_world'><scale value='3e38'/><translate x='3e38'/></transform>")), "");

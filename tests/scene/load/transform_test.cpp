@@ -71,7 +71,8 @@ TEST(Transform, WrongOnesAreErrors) {
   EXPECT_SAYS(error("<rotate angle='5'/>"), "needs an axis");
   EXPECT_EQ(error("<rotate x='0' y='0' z='0' angle='0'/>"), "");
   EXPECT_SAYS(error("<lookat origin='nan,0,1' target='0,0,0'/>"), "origin=\"nan,0,1\" should be three numbers");
-  EXPECT_SAYS(error("<lookat origin='0,0,0' target='0,0,0' up='0,1,0'/>"), "the same point");
+  EXPECT_SAYS(error("<lookat origin='1e300,0,0' target='0,0,0' up='0,1,0'/>"), "origin is beyond the range of numbers");
+  EXPECT_SAYS(error("<lookat origin='0,0,0' target='0,0,0' up='0,1,0'/>"), "the same point; move one of them");
   EXPECT_SAYS(error("<lookat origin='0,0,0' target='0,2,0' up='0,1,0'/>"), "up points along");
   EXPECT_SAYS(error("<lookat target='0,2,0' up='0,1,0'/>"), "needs origin");
   EXPECT_SAYS(error("\n<turn x='1'/>"), "test.xml:3: <turn>: is unknown inside <transform>");

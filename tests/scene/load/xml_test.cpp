@@ -96,6 +96,11 @@ TEST(Parameters, UnknownOnesAreErrors) {
   EXPECT_EQ(error_of("<default name='known' value='1'/>", define("known", "2")), "");
 }
 
+TEST(Parameters, ADollarAloneNamesNone) {
+  EXPECT_EQ(error_of("<bsdf type='$'/>"),
+            "test.xml:2: <bsdf>: a $ begins the name of a parameter, and none follows; leave it out");
+}
+
 TEST(Parameters, ExplosionIsStopped) {
   std::string text = "<default name='p0' value='xxxxxxxxxxxxxxxx'/>";
   for (char c = 'a'; c < 'z'; ++c) {
@@ -169,10 +174,13 @@ TEST(Include, BringsElementsAndDefaults) {
 }
 
 TEST(Include, WrongOnesAreErrors) {
-  EXPECT_SAYS(error_of("\n<include filename='nowhere.xml'/>"), "test.xml:3: <include>: there is no file nowhere.xml");
+  EXPECT_SAYS(error_of("\n<include filename='nowhere.xml'/>"),
+              "test.xml:3: <include>: there is no file \"nowhere.xml\" in ");
   EXPECT_SAYS(error_of("<include/>"), "needs filename");
   EXPECT_SAYS(error_of("<include filename='cycle.xml'/>"), "cycle.xml includes itself");
+  EXPECT_SAYS(error_of("<include filename='broken.xml'/>"), "test.xml:2: <include>: ");
   EXPECT_SAYS(error_of("<include filename='broken.xml'/>"), "broken.xml:3: not well-formed");
+  EXPECT_SAYS(error_of("<include filename='empty.obj'/>"), "test.xml:2: <include>: ");
   EXPECT_SAYS(error_of("<include filename='.'/>"), "there is no file");
 }
 
@@ -246,6 +254,52 @@ TEST(Xml, FilesThatMayNotBeReadAreTold) {
 TEST(Xml, LinesAreCountedFromOne) {
   EXPECT_SAYS(error_of("<bsdf type='diffuse'/>\n\n\n<bsdf type='foo'/>"),
               "test.xml:5: <bsdf type=\"foo\">: unknown bsdf; supported: diffuse, twosided");
+}
+
+// UTF-16 has its lines where UTF-8 has them.
+TEST(Xml, LinesOfUtf16AreCounted) {
+  const std::string text = "<scene version='3.0.0'>\n\n<sensor type='perspective'/>\n<shape type='\x7f'/></scene>";
+  for (const bool big : {false, true}) {
+    std::string wide = big ? "\xfe\xff" : "\xff\xfe";
+    for (const char c : text)
+      for (int half = 0; half < 2; ++half) wide += (half == 1) == big ? c : '\0';
+    try {
+      load_scene_text(wide, "", "test.xml");
+      ADD_FAILURE();
+    } catch (const Error& e) {
+      EXPECT_SAYS(std::string(e.what()), "test.xml:4: <shape type=\"\x7f\">: unknown shape");
+    }
+  }
+  // beyond 16 bits
+  std::string wide("\xff\xfe", 2);
+  for (const char16_t c : std::u16string(u"<scene><sensor type='perspective'/><shape type='\U0001d11e'/></scene>"))
+    wide += {char(c & 255), char(c >> 8)};
+  try {
+    load_scene_text(wide, "", "test.xml");
+    ADD_FAILURE();
+  } catch (const Error& e) {
+    EXPECT_SAYS(std::string(e.what()), "<shape type=\"\xf0\x9d\x84\x9e\">");
+  }
+}
+
+// Whatever the file is full of.
+TEST(Xml, MessagesAreShort) {
+  const std::string name(100000, 'z');
+  for (const std::string& text :
+       {"<shape type='" + name + "'/>", "<shape type='sphere' id='" + name + "'><ref/></shape>",
+        "<shape type='sphere'><float name='radius' value='-" + name + "'/></shape>",
+        "<shape type='sphere'><ref id='" + name + "'/></shape>", "<" + name + " a='$b'/>"}) {
+    EXPECT_NE(error_of(text), "");
+    EXPECT_LT(error_of(text).size(), 600u);
+  }
+}
+
+TEST(Xml, NumbersThatAreTooLargeAreToldFromWords) {
+  const auto radius = [](const std::string& value) {
+    return error_of("<shape type='sphere'><float name='radius' value='" + value + "'/></shape>");
+  };
+  for (const char* huge : {"1e39", "1e3000", " +1e3000"}) EXPECT_SAYS(radius(huge), "is beyond the range of numbers");
+  for (const char* word : {"nan", "inf", "1e", "one", ""}) EXPECT_SAYS(radius(word), "is not a number");
 }
 
 TEST(Xml, MessagesAreOneLine) {
