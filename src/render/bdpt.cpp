@@ -220,10 +220,10 @@ Joiner joiner_of(const Job& job, const Subpath& camera, float worth) {
   return j;
 }
 
-// s >= 2: some of all light vertices of the batch.
+// s >= 2: some of the light vertices of many chunks.
 void join_stored(Work& work, float worth) {
   const Job& job = work.job;
-  const LightStore& store = *job.pool;
+  const LightStore& store = *work.scratch.pool;
   const Subpath& camera = work.scratch.camera;
   const Vertex& v = camera[camera.n - 1];
   std::vector<StoreChoice>& choices = work.scratch.choices;
@@ -252,7 +252,7 @@ void join_all(Work& work, const Surface& surface) {
   const float worth = worth_of(work, camera[t - 1]);
   join_next_event(work, worth);
   if (job.photons) join_merged(job, work.sample, work.scratch);
-  if (job.pool) return join_stored(work, worth);
+  if (work.scratch.pool) return join_stored(work, worth);
   const int most = std::min(light.n, job.walk.max_edges + 1 - t);
   Candidate c;
   for (int s = 2; s <= most; ++s)

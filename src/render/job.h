@@ -48,8 +48,7 @@ struct Job {
   Trace light_half = nullptr;          ///< what is traced before, of all samples of a chunk or batch; null: nothing
   const PhotonMap* photons = nullptr;  ///< light vertices to merge with: of all light subpaths of the batch, and of
                                        ///< one in inner_photons; null: none
-  const LightStore* pool = nullptr;    ///< light vertices to join, of all light subpaths of the batch; null: one's own
-  double kept = 0;                     ///< light vertices of a chunk that go into the pool, about
+  double kept = 0;                     ///< light vertices of a chunk that go into its pool, about
   float effort = 1;                    ///< how much is spent on joins (J8)
   bool merges_alone = false;           ///< nothing but merges brings light, so they need no weights
   int final_gather = 0;                ///< of photon, see RenderOptions
@@ -82,7 +81,7 @@ struct Halves {
   };
   std::vector<Part> samples;
   float splat_counts = 1;  ///< for how many light subpaths each one's splats stand, where fewer than pixels are traced
-  LightStore store;        ///< of what the chunk's light subpaths left, what goes into the pool
+  LightStore store;        ///< of what the chunk's light subpaths left, what goes into its pool
   Photons photons, few;
 };
 
@@ -99,10 +98,11 @@ struct alignas(64) Scratch {
   LightStore traced;     ///< light subpaths of the chunk at work
   Expectation expected;  ///< of choices
   std::vector<StoreChoice> choices;
-  Visibility visibility;         ///< of lights, from what the lens sees of a chunk, in this pass
-  std::vector<NearPhoton> near;  ///< to the vertex at hand
-  Halves* halves = nullptr;      ///< of the chunk
-  Halves own_halves;             ///< where those of one chunk are enough
+  Visibility visibility;             ///< of lights, from what the lens sees of a chunk, in this pass
+  std::vector<NearPhoton> near;      ///< to the vertex at hand
+  Halves* halves = nullptr;          ///< of the chunk
+  const LightStore* pool = nullptr;  ///< light vertices to join, of many chunks' light subpaths; null: one's own
+  Halves own_halves;                 ///< where those of one chunk are enough
   Counters counters;
   Sightings sightings;
   uint64_t rejected = 0;

@@ -58,7 +58,8 @@ struct Batch {
   std::vector<Ledger> ledgers;
   std::vector<uint64_t> rejected_at;  // path of each chunk's first rejected value
   std::vector<Halves> halves;         // only where light subpaths of the whole batch are joined or merged
-  LightStore pool;
+  std::vector<LightStore> pools;      // likewise; a chunk's camera halves read one of them
+  std::vector<uint32_t> pool_of;      // chunk by chunk
   PhotonMap photons[2];
 };
 
@@ -68,21 +69,36 @@ Scratch& prepare(const Job& job, Batch& batch, uint32_t i, Scratch& scratch) {
   scratch.ledger = &batch.ledgers[i];
   scratch.strategies = job.techniques ? &batch.strategies[i] : nullptr;
   scratch.halves = batch.halves.empty() ? &scratch.own_halves : &batch.halves[i];
+  scratch.pool = batch.pools.empty() ? nullptr : &batch.pools[batch.pool_of[i]];
   return scratch;
 }
 
-// Light vertices that the joins of a batch choose from, about: no more than fill blocks that are all looked at.
+// Light vertices of a pool, about: no more than fill blocks that are all looked at. And how many chunks make one: what
+// few lights shine on is streaked in the same way in all chunks that share them, so neighbours rarely do.
 constexpr double pooled_lights = 1000;
+constexpr uint32_t chunks_per_pool = 32;
 
-// What the light halves of the batch's chunks left for all of them.
-void gather_lights(Job& job, const Film& film, uint32_t from, Batch& batch) {
-  std::vector<const LightStore*> stores;
-  std::vector<const Photons*> photons, few;
-  for (const Halves& h : batch.halves) stores.push_back(&h.store), photons.push_back(&h.photons), few.push_back(&h.few);
-  keep(batch.pool, stores, pooled_lights, number_of(job, film, ~from));
-  finish(batch.pool);
-  job.pool = &batch.pool;
+// Which pool a chunk gives its light vertices to, and takes others from.
+void assign_pools(const Job& job, const Film& film, uint32_t from, Batch& batch) {
+  const uint32_t count = uint32_t(batch.halves.size()), pools = std::max(count / chunks_per_pool, 1u);
+  batch.pools.resize(pools), batch.pool_of.resize(count);
+  for (uint32_t i = 0; i < count; ++i)
+    batch.pool_of[i] = uint32_t(hash(hash(job.seed, 0x3f0d), hash(film.dropped + film.passes, from + i)) % pools);
+}
+
+void fill_pools(const Job& job, const Film& film, uint32_t from, Batch& batch) {
+  std::vector<std::vector<const LightStore*>> stores(batch.pools.size());
+  for (size_t i = 0; i < batch.halves.size(); ++i) stores[batch.pool_of[i]].push_back(&batch.halves[i].store);
+  parallel_for(uint32_t(stores.size()), [&](uint32_t k) {
+    keep(batch.pools[k], stores[k], pooled_lights, number_of(job, film, ~(from + k)));
+    finish(batch.pools[k]);
+  });
+}
+
+void gather_photons(Job& job, Batch& batch) {
   if (!(job.walk.merging.paths > 0)) return;
+  std::vector<const Photons*> photons, few;
+  for (const Halves& h : batch.halves) photons.push_back(&h.photons), few.push_back(&h.few);
   fill(batch.photons[0], job.walk.merging, photons);
   if (job.walk.merging.inner > 0) fill(batch.photons[1], job.walk.merging, few);
   job.photons = batch.photons;
@@ -94,13 +110,15 @@ void trace_in_halves(Job& job, Film& film, uint32_t from, Batch& batch, std::vec
   const uint32_t count = uint32_t(batch.splats.size());
   const auto at_work = [&](uint32_t i) -> Scratch& { return prepare(job, batch, i, scratches[thread_slot()]); };
   batch.halves.resize(count);
-  job.kept = std::max(2 * pooled_lights / count, 8.0);
+  assign_pools(job, film, from, batch);
+  job.kept = 2 * pooled_lights * double(batch.pools.size()) / count;
   parallel_for(count, [&](uint32_t i) {
     Scratch& scratch = at_work(i);
     trace_light_halves(job, film, from + i, scratch);
     batch.rejected_at[i] = scratch.rejected_at;
   });
-  gather_lights(job, film, from, batch);
+  fill_pools(job, film, from, batch);
+  gather_photons(job, batch);
   parallel_for(count, [&](uint32_t i) {
     Scratch& scratch = at_work(i);
     scratch.rejected_at = batch.rejected_at[i];
@@ -141,7 +159,7 @@ uint32_t affordable_chunks(const RenderOptions& options, const RenderState& stat
   return std::max(uint32_t(std::max(affordable, 0.0)), least_chunks);
 }
 
-// Chunks whose light vertices are joined: enough for pooled_lights, and few enough to end when the time is over.
+// Chunks whose light vertices are joined: enough for many threads, and few enough to end when the time is over.
 constexpr uint32_t pool_chunks = 128;
 
 // Batches of which a pass is made when light subpaths are joined or merged: as few as the bound allows, and alike.
@@ -395,7 +413,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
     const uint32_t most_at_once =
         in_halves ? equal_chunks(all, merging ? batch_chunks : pool_chunks) : affordable_chunks(options, state);
     const uint32_t count = std::min({batch_chunks, all - from, most_at_once});
-    if (!in_halves) batch.halves.clear();
+    if (!in_halves) batch.halves.clear(), batch.pools.clear();
     batch.splats.resize(count);
     batch.strategies.resize(count);
     batch.ledgers.assign(count, {});

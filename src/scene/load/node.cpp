@@ -48,7 +48,7 @@ std::string one_line(std::string text) {
 
 std::string shortened(const std::string& text) {
   constexpr size_t most = 80;
-  return text.size() > most ? text.substr(0, most) + "..." : text;
+  return text.size() > most ? fmt::format("{}...", std::string_view(text).substr(0, most)) : text;
 }
 
 const std::string* attribute(const Node& node, const char* name) {
