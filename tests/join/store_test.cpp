@@ -1,4 +1,6 @@
 // One of all light vertices, drawn: with its weight it stands for all of them, whatever it is asked for.
+#include "ajar/join/pool.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -45,6 +47,16 @@ int expect_unbiased(const LightStore& store, const std::vector<Subpath>& cameras
     EXPECT_LT(5 * error, 0.2 * expected) << "too noisy to see a wrong weight";
   }
   return lit;
+}
+
+TEST(LightStore, StandsForAllPlacesOfWhichSomeCountMore) {
+  const Room room(1, true);
+  const LightStore all = room.store(64);
+  LightStore some;
+  keep(some, {&all}, 0.4 * double(all.places.size()), 0.5f);
+  finish(some);
+  ASSERT_GT(std::count_if(some.places.begin(), some.places.end(), [](const auto& p) { return p.counts > 1.5f; }), 4);
+  EXPECT_GT(expect_unbiased(some, room.cameras(12)), 8);
 }
 
 TEST(LightStore, PartsAddUpToTheWhole) {
