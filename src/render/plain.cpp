@@ -21,8 +21,8 @@ constexpr double least_miss = 0.1;                    // of a square's light
 constexpr double fastest = 16;                        // of path tracing: passes for one of the guided integrator
 // Of the guided integrator's error after equal time: path tracing takes over; less while fields are young.
 constexpr double far_better = 0.7, better = 1.2;
-// It is not looked at again: after so many passes, or at once.
-constexpr double worse = 1.6, much_worse = 2;
+// It is not looked at again: after so many passes, before, or at once.
+constexpr double worse = 1.6, much_worse = 2, hopeless = 8;
 constexpr uint32_t settling = 16;
 // Factor on the error of what merges: blur within squares is not seen. By errors against references
 // (docs/results/plan.md).
@@ -138,7 +138,7 @@ PassHalves operator-(PassHalves a, const PassHalves& b) {
 
 // Path tracing that took over: its passes of the whole film are there to be held against the guided image, at no cost.
 // What lies in a few squares shows here, and what it finds in one sample of many thousands.
-void doubt_plain(RenderState& state) {
+void doubt_plain(bool merges, RenderState& state) {
   Plain& plain = state.plain;
   Film& film = state.film;
   if (film.chunks > 0 || film.passes == plain.passes || !std::has_single_bit(film.passes)) return;
@@ -146,7 +146,7 @@ void doubt_plain(RenderState& state) {
   const PassHalves guided = halves_of(plain.guided, all), since = halves_of(film, all) - guided;
   const PlainLook look = compare_halves(guided, since);
   const double passes = since.passes;
-  plain.taken = look.plain * passes + look.missed * std::min(passes, rarest) <= turned_wild;
+  plain.taken = look.plain * passes + missed_by_plain(look, merges) * std::min(passes, rarest) <= turned_wild;
   if (!plain.taken) {
     film = std::move(plain.guided);
     plain.returned = since.passes;
@@ -186,6 +186,10 @@ PlainLook compare_halves(const PassHalves& guided, const PassHalves& plain) {
   return out;
 }
 
+double missed_by_plain(const PlainLook& look, bool merges) {
+  return merges ? std::max(look.missed - square * look.bias, 0.0) : look.missed;
+}
+
 Job plainly(Job job) {
   job.trace = trace_path, job.light_half = nullptr;
   job.guided = false, job.learning = nullptr, job.training = nullptr;
@@ -195,7 +199,8 @@ Job plainly(Job job) {
 
 void try_plain(const Job& job, const std::string& integrator, std::vector<Scratch>& scratches, RenderState& state) {
   Plain& plain = state.plain;
-  if (plain.guided.passes > 0) return doubt_plain(state);
+  const bool merges = is_merging(integrator);
+  if (plain.guided.passes > 0) return doubt_plain(merges, state);
   const Film& film = state.film;
   const bool due = std::has_single_bit(film.passes) && film.passes >= first_look && film.passes <= last_look;
   if (plain.settled || film.chunks > 0 || !due || plain.passes == film.passes) return;
@@ -211,14 +216,16 @@ void try_plain(const Job& job, const std::string& integrator, std::vector<Scratc
   trace_to(uint32_t(pace * film.passes / 2) * 2, without, film, squares, scratches, plain);
   const PlainLook look = compare_halves(halves_of(film, squares), plain.seen);
   const double passes = plain.seen.passes;
-  const double guided = is_merging(integrator) ? blur * (look.guided + look.bias) : look.guided;
-  plain.missed = std::max(look.missed * passes, 0.5 * plain.missed);  // twice the samples would have shown it
+  const double guided = merges ? blur * (look.guided + look.bias) : look.guided;
+  plain.missed =
+      std::max(missed_by_plain(look, merges) * passes, 0.5 * plain.missed);  // twice the samples would have shown it
   const double error = look.plain + plain.missed / passes;
   plain.passes = film.passes;
   plain.ratio = guided > 0 ? error / guided : 0;
   const double enough = film.passes == first_look ? far_better : better;
   plain.taken = plain.ratio > 0 && plain.ratio < enough && error * passes < tame;
-  plain.settled = plain.taken || film.passes == last_look || plain.ratio > much_worse || error * passes > wild ||
+  const double most = film.passes == first_look ? hopeless : much_worse;
+  plain.settled = plain.taken || film.passes == last_look || plain.ratio > most || error * passes > wild ||
                   (film.passes >= settling && plain.ratio > worse);
   if (plain.settled) plain.seen = {};
   if (plain.taken && film.splats) plain.guided = film, plain.ledger = state.stats.ledger;

@@ -172,7 +172,7 @@ double ray_cost(const std::string& integrator) {
   if (integrator == "path") return 0.23;
   if (integrator == "bdpt") return 0.245;
   if (integrator == "guided-path") return 0.42;
-  return integrator == "guided-vcm" ? 0.65 : 0.44;
+  return integrator == "guided-vcm" ? 0.75 : 0.54;
 }
 
 }  // namespace ajar

@@ -59,6 +59,14 @@ TEST(Plain, BiasIsSeenWhereNoiseIsNot) {
   EXPECT_NEAR(look.bias, 0.5 * 0.01 / 1.25, 0.0016);
 }
 
+TEST(Plain, BlurIsNotMissed) {
+  const PlainLook blurred = compare_halves(times(flicker(0.9, 1), 1.2, 64), flicker(0.9, 2));
+  EXPECT_GT(missed_by_plain(blurred, false), 0.5);
+  EXPECT_LT(missed_by_plain(blurred, true), 0.15);
+  const PlainLook caustic = compare_halves(flicker(0.5, 1), times(flicker(0.5, 2), 0.5, 1));
+  EXPECT_NEAR(missed_by_plain(caustic, true), caustic.missed, 0.1 * caustic.missed) << "one square in 128";
+}
+
 TEST(Plain, BlackImagesSayNothing) {
   const PassHalves black{passes, std::vector<double>(square), std::vector<double>(square)};
   const PlainLook look = compare_halves(black, black);

@@ -27,6 +27,9 @@ struct PlainLook {
   double bias = 0;    ///< by which whole squares of the guided image differ from path tracing's, beyond noise
 };
 PlainLook compare_halves(const PassHalves& guided, const PassHalves& plain);
+/// What path tracing has not seen, as PlainLook::missed. Where the guided integrator merges, its blur makes many
+/// squares too bright, which is not path tracing's fault.
+double missed_by_plain(const PlainLook& look, bool merges);
 
 /// Path tracing beside a guided integrator: squares spread over the film, in as much time as the guided passes of their
 /// pixels took. (L2)
