@@ -15,7 +15,7 @@ namespace {
 // Share of the memory up to which cells are added, and strata divided: cells are few, their strata go on growing, and a
 // lesson does not know how much it is about to add. Coarse cells are always let in: without one, what has moved to
 // where nothing was (a door's leaf) would not be guided at all.
-constexpr double for_cells = 0.4, for_strata = 0.9;
+constexpr double for_cells = 0.4, for_strata = 0.75;
 constexpr int coarse_levels = 3;
 bool is_left(const Fields& fields, double share, const LearnOptions& options) {
   return double(bytes(fields)) < share * double(options.memory);
