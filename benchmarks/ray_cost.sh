@@ -1,5 +1,5 @@
 #!/bin/sh
-# What a ray costs with all that hangs on it, by scene and integrator, in CPU ns: what `ajar plan` and guided renders reckon with (trials.cpp).
+# What a ray costs with all that hangs on it, by scene and integrator, in CPU ns: what guided renders reckon with (plain.cpp).
 # Usage: ray_cost.sh AJAR [SECONDS [SCENE.xml ...]]    one thread; 8 s each; all scenes that are there
 set -e
 ajar=$1 seconds=${2:-8}

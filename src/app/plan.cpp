@@ -1,4 +1,4 @@
-// ajar plan: what a scene needs, as a short pilot sees it.
+// ajar plan: what a scene needs, as a small render of it shows.
 
 #include <fmt/format.h>
 
@@ -33,10 +33,12 @@ void run_plan(const Arguments& a) {
   options.seed = a.seed, options.threads = a.threads;
   set_max_depth(a.max_depth, scene, options);
   catch_stop();
-  const Plan plan = make_plan(scene, accel, options, [](const RenderState&) { return !stop_asked(); });
+  Plan plan = make_plan(scene, options);
+  run_pilot(
+      scene, accel, options, [](const RenderState&) { return !stop_asked(); }, plan);
   if (stop_asked()) throw Interrupted{"interrupted in the pilot; nothing is planned"};
   if (const double least = least_budget(scene.camera); !scene.lights.empty() && options.cpu_seconds < least)
-    fmt::print(stderr, "ajar: note: --cpu-time {} is too short to measure anything; give {:.0f}s or more\n", a.cpu_time,
+    fmt::print(stderr, "ajar: note: --cpu-time {} is too short to learn anything; give {:.0f}s or more\n", a.cpu_time,
                std::ceil(least));
   fmt::print("{}", a.json ? to_json(plan).dump(2) + "\n" : describe(plan));
 }
@@ -48,7 +50,7 @@ void add_plan(CLI::App& app) {
   CLI::App* c = app.add_subcommand("plan", "Tell which parts of the method a scene needs");
   c->add_option("scene", a->scene, "Mitsuba XML scene")->required();
   c->add_option("--cpu-time", a->cpu_time,
-                "budget of the render that is planned; the pilot takes about 5 % of it, more of a short one (60s)");
+                "budget of the render that is planned (60s); the pilot takes 5 % of it, more of a short one");
   c->add_option("--size", a->size, "WIDTHxHEIGHT instead of the scene's");
   c->add_option("--max-depth", a->max_depth, "edges of the longest path; -1 is unlimited");
   c->add_option("--seed", a->seed, "another seed")->check(whole(0, ~uint64_t(0)));

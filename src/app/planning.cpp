@@ -7,50 +7,54 @@
 namespace ajar {
 namespace {
 
-double cheapest(const Plan& plan) {
-  double least = infinity;
-  for (const Trial& t : plan.trials) least = std::min(least, t.price());
-  return least;
+using Json = nlohmann::ordered_json;
+
+std::string describe(const Pilot& p) {
+  std::string out = fmt::format("pilot at {}x{}, {:.1f} s of CPU\n", p.width, p.height, p.cpu_seconds);
+  if (p.passes == 0)
+    return out + "  no light was seen: it is hard to find, or none comes to the camera within --max-depth\n";
+  out += fmt::format("  {:<12} {:>20} {:>20} {:>18}\n", "", "samples in its time", "relMSE of a sample",
+                     "error, equal time");
+  out += fmt::format("  {:<12} {:>20.3g} {:>20.3g} {:>18.3g}\n", "guided-bdpt", 1.0, p.guided, 1.0);
+  out += fmt::format("  {:<12} {:>20.3g} {:>20.3g} {:>18.3g}\n", "path", p.path_for_one, p.path, p.ratio);
+  if (p.saved_seconds() > 0)
+    out +=
+        fmt::format("  {} saves {:.0f} s of CPU to equal error\n", p.plain ? "path" : "guided-bdpt", p.saved_seconds());
+  return out;
 }
 
-std::string cell(double x, int digits) { return x < infinity ? fmt::format("{:.{}g}", x, digits) : "-"; }
+Json to_json(const Pilot& p) {
+  return {{"width", p.width},
+          {"height", p.height},
+          {"cpu_seconds", p.cpu_seconds},
+          {"passes", p.passes},
+          {"error_after_equal_time", p.ratio},
+          {"path_tracing_takes_over", p.plain},
+          {"settled", p.settled},
+          {"guided_relmse_per_sample", p.guided},
+          {"path_relmse_per_sample", p.path},
+          {"path_samples_for_one", p.path_for_one},
+          {"saved_cpu_seconds", p.saved_seconds()}};
+}
 
 }  // namespace
 
 std::string describe(const Plan& plan) {
-  std::string out;
-  if (!plan.trials.empty()) {
-    out += fmt::format("pilot at {}x{}, {:.1f} s ({:.1f} s of CPU)\n", plan.width, plan.height, plan.seconds,
-                       plan.cpu_seconds);
-    out += fmt::format("  {:<12} {:>6} {:>10} {:>14} {:>8} {:>22}\n", "integrator", "passes", "us/sample",
-                       "relMSE/sample", "+-", "time to equal error");
-    for (const Trial& t : plan.trials)
-      out += fmt::format("  {:<12} {:>6} {:>10.2f} {:>14} {:>8} {:>22}\n", t.integrator, t.passes, t.cost,
-                         cell(t.error + t.unseen, 3), t.price() < infinity ? cell(t.deviation, 2) : "-",
-                         t.price() < infinity ? fmt::format("{:.2f}", t.price() / cheapest(plan)) : "-");
-    if (!(cheapest(plan) < infinity))
-      out += "  no trial saw any light: it is hard to find, or none comes to the camera within --max-depth\n";
-  }
+  std::string out = plan.pilot ? describe(*plan.pilot) : "";
   out += fmt::format("  {:<16} {:<4} {}\n", "part", "on", "why");
   for (const Part& p : plan.parts) out += fmt::format("  {:<16} {:<4} {}\n", p.name, p.on ? "yes" : "no", p.why);
-  return out + fmt::format("render with {}\n", plan.integrator);
+  const bool plain = plan.pilot && plan.pilot->plain;
+  return out +
+         fmt::format("render with {}{}\n", plan.integrator, plain ? ", which leaves this scene to path tracing" : "");
 }
 
 nlohmann::ordered_json to_json(const Plan& plan) {
-  const auto number_or_null = [](double x) { return x < infinity ? nlohmann::ordered_json(x) : nullptr; };
-  nlohmann::ordered_json trials = nlohmann::ordered_json::array(), parts = nlohmann::ordered_json::array();
-  for (const Trial& t : plan.trials)
-    trials.push_back({{"integrator", t.integrator},
-                      {"passes", t.passes},
-                      {"microseconds", t.cost},
-                      {"relmse_per_sample", number_or_null(t.error)},
-                      {"deviation", t.deviation},
-                      {"unseen", t.unseen},
-                      {"waste", number_or_null(t.waste)},
-                      {"time_to_equal_error", number_or_null(t.price() / cheapest(plan))}});
+  Json parts = Json::array();
   for (const Part& p : plan.parts) parts.push_back({{"part", p.name}, {"on", p.on}, {"why", p.why}});
-  return {{"integrator", plan.integrator},   {"width", plan.width}, {"height", plan.height}, {"seconds", plan.seconds},
-          {"cpu_seconds", plan.cpu_seconds}, {"trials", trials},    {"parts", parts}};
+  Json out = {{"integrator", plan.integrator}};
+  if (plan.pilot) out["pilot"] = to_json(*plan.pilot);
+  out["parts"] = parts;
+  return out;
 }
 
 }  // namespace ajar

@@ -9,7 +9,7 @@
 
 namespace ajar {
 
-/// Lines: trials, parts, what will be rendered with.
+/// Lines: what the pilot showed, parts, what will be rendered with.
 std::string describe(const Plan& plan);
 nlohmann::ordered_json to_json(const Plan& plan);
 

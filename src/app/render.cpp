@@ -39,9 +39,8 @@ void hold_against(const RenderArguments& a, const Scene& scene, const Accel& acc
   if (!a.quiet) fmt::print("{}\n", describe(run.versus, state));
 }
 
-void plan_run(const RenderArguments& a, Scene& scene, const Accel& accel, Run& run) {
-  run.plan = make_plan(scene, accel, run.options, [](const RenderState&) { return !stop_asked(); });
-  if (stop_asked()) throw Interrupted{"interrupted in the pilot; nothing was rendered"};
+void plan_run(const RenderArguments& a, const Scene& scene, Run& run) {
+  run.plan = make_plan(scene, run.options);
   const std::string& chosen = run.options.integrator = run.plan.integrator;
   run.options.learn_lights &= !is_guided(chosen);
   run.options.techniques &= has_strategies(chosen);
@@ -105,11 +104,10 @@ RenderState begin(const RenderArguments& a, Scene& scene, const Run& run) {
   return state;
 }
 
-// The user's time begins after loading: building and the pilot count.
+// The user's time begins after loading: building counts.
 RenderOptions without_start(RenderOptions options, const Run& run) {
-  if (options.seconds > 0) options.seconds = std::max(options.seconds - run.build_seconds - run.plan.seconds, 1e-3);
-  if (options.cpu_seconds > 0)
-    options.cpu_seconds = std::max(options.cpu_seconds - run.build_cpu - run.plan.cpu_seconds, 1e-3);
+  if (options.seconds > 0) options.seconds = std::max(options.seconds - run.build_seconds, 1e-3);
+  if (options.cpu_seconds > 0) options.cpu_seconds = std::max(options.cpu_seconds - run.build_cpu, 1e-3);
   return options;
 }
 
@@ -173,7 +171,7 @@ void run_render(RenderArguments a) {
   run.build_seconds = wall_seconds() - wall1, run.build_cpu = process_cpu_seconds() - cpu1;
   run.accel_bytes = accel.bytes();
   catch_stop();
-  if (run.planned) plan_run(a, scene, accel, run);
+  if (run.planned) plan_run(a, scene, run);
   run.light_choice = light_choice_of(a, run.options.integrator);
 
   RenderState state = begin(a, scene, run);

@@ -123,7 +123,8 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
                 "path, bdpt, light, guided-path, guided-bdpt, vcm, guided-vcm, photon, vpl or plain-vpl (default: the "
                 "scene's, else what the plan says)");
   c->add_option("--plan", a->plan,
-                "what to use: auto (a short pilot decides), all (to the end: path tracing never takes over from what "
+                "what to use: auto (guided-bdpt where there is time to learn, until path tracing turns out to be "
+                "enough), all (to the end: path tracing never takes over from what "
                 "guides), none, or a list of light-subpaths, camera-guiding, light-guiding (default: auto where no "
                 "integrator is named)");
   c->add_option("--spp", a->spp,

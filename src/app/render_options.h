@@ -29,7 +29,7 @@ struct RenderArguments {
 
 /// Adds them to a command, which must not outlive them.
 void add_options(CLI::App& command, RenderArguments& arguments);
-/// Whether a pilot decides: where the user asks for it, or where neither he nor the scene names an integrator.
+/// Whether the plan chooses: where the user asks for it, or where neither he nor the scene names an integrator.
 bool plans(const RenderArguments&, const Scene&);
 /// "uniform", "power", "tree" or "learned".
 std::string light_choice_of(const RenderArguments&, const std::string& integrator);

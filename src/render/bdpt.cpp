@@ -8,8 +8,8 @@ namespace ajar {
 namespace {
 
 // Joins for a pixel's whole light, where the lens sees the vertex and beyond, and blocks of lights that they choose
-// from there: at the full effort (J3).
-constexpr float seen_joins = 12, inner_joins = 3, most_blocks = 32;
+// from there: at the full effort (J3). Rays to lights (J4).
+constexpr float seen_joins = 12, inner_joins = 3, most_blocks = 32, seen_next_events = 5, inner_next_events = 1.5f;
 
 // One camera sample with its light subpath, at work.
 struct Work {
@@ -157,11 +157,13 @@ float worth_of(Work& work, const Vertex& v) {
   return work.pixel > 0 ? luminance(v.beta) * scatters(v.guide) / work.pixel : 0;
 }
 
-// Rays to lights: the more, the more of the pixel's light is expected of them.
+// Rays to lights: the more, the more of the pixel's light is expected of them. Behind the first vertex that the lens
+// sees they all hang on the one walk that came there.
 int next_events(const Work& work, const Vertex& v, float worth) {
   if (!(worth > 0) || v.guide.cell == none) return 1;
   const float brings = worth * work.job.walk.fields->q.cells[v.guide.cell].direct;
-  return brings > 0 ? int(std::clamp(3 * std::sqrt(brings), 1.0f, 16.0f)) : 1;  // (J4)
+  const float most = v.seen ? seen_next_events : inner_next_events;
+  return brings > 0 ? int(std::clamp(most * std::sqrt(brings), 1.0f, 16.0f)) : 1;  // (J4)
 }
 
 // s = 1: next-event estimation.

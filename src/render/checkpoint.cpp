@@ -7,7 +7,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind checkpoint_kind = {"AJARck15", "checkpoint", "render once with --checkpoint",
+constexpr FileKind checkpoint_kind = {"AJARck16", "checkpoint", "render once with --checkpoint",
                                       "start again without --resume"};
 
 // One list of fields for both ways.
@@ -51,6 +51,7 @@ void read(Reader& r, Learning& l) {
 template <class Io, class State>
 void plain_fields(Io& io, State& plain) {
   io.value(plain.taken), io.value(plain.settled), io.value(plain.passes), io.value(plain.ratio);
+  io.value(plain.pace), io.value(plain.guided_error), io.value(plain.plain_error);
   io.value(plain.missed), io.value(plain.rays), io.value(plain.seen.passes), io.array(plain.seen.sum),
       io.array(plain.seen.half);
   io.value(plain.returned);

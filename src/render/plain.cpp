@@ -6,7 +6,6 @@
 
 #include "ajar/core/parallel.h"
 #include "ajar/render/render.h"
-#include "ajar/render/trials.h"
 #include "chunk.h"
 #include "job.h"
 
@@ -16,11 +15,12 @@ namespace {
 constexpr uint32_t first_look = 4, last_look = 64;  // passes
 constexpr uint32_t least_squares = 32, most_squares = 128;
 constexpr uint32_t square = plain_side * plain_side;  // pixels
-constexpr double exposed = 0.2, dark = 0.01;          // as in trials.cpp
+constexpr double exposed = 0.2;                       // mean luminance of the image as it would be looked at
+constexpr double dark = 0.01;                         // of relMSE
 constexpr double least_miss = 0.1;                    // of a square's light
 constexpr double fastest = 16;                        // of path tracing: passes for one of the guided integrator
 // Of the guided integrator's error after equal time: path tracing takes over; less while fields are young.
-constexpr double far_better = 0.7, better = 1.2;
+constexpr double far_better = 0.9, better = 1.05;
 // It is not looked at again: after so many passes, before, or at once.
 constexpr double worse = 1.6, much_worse = 2, hopeless = 8;
 constexpr uint32_t settling = 16;
@@ -29,12 +29,20 @@ constexpr uint32_t settling = 16;
 constexpr double blur = 1.5;
 // relMSE of a sample. Above, samples are so uneven that a few thousand pixels do not tell their error, and path tracing
 // is not what the scene needs.
-constexpr double tame = 1, wild = 4;
+constexpr double tame = 1.5, wild = 4;
 // Once path tracing took over, above this it gives the render back, until there are so many times the passes.
-constexpr double turned_wild = 2;
+constexpr double turned_wild = 3;
 constexpr uint32_t doubted = 64;
 // Passes, at most, by which what it missed then counts: where the guided image is too bright by chance, it stays so.
 constexpr double rarest = 32;
+
+// CPU time of a ray with all that hangs on it [us], about: benchmarks/ray_cost.sh (docs/results/plan.md). Costs are
+// reckoned from it, so that what is decided does not depend on the clock.
+constexpr double path_ray = 0.23;
+double ray_cost(const std::string& integrator) {
+  if (integrator == "guided-path") return 0.42;
+  return is_merging(integrator) ? 0.75 : 0.54;
+}
 
 uint64_t ray_count(const Counters& n) { return n.camera_rays + n.light_rays + n.shadow_rays; }
 
@@ -74,8 +82,8 @@ void trace_to(uint32_t passes, const Job& job, const Film& film, const std::vect
     parallel_for(uint32_t(squares.size()), [&](uint32_t i) {
       for (uint32_t k = 0; k < square; ++k) {
         const Rgb value = trace_alone(job, at, pixel_of(film, squares[i], k), scratches[thread_slot()]);
-        plain.seen.sum[i * square + k] += double(luminance(value));
-        if (at.passes % 2 == 0) plain.seen.half[i * square + k] += double(luminance(value));
+        plain.seen.sum[i * square + k] += value;
+        if (at.passes % 2 == 0) plain.seen.half[i * square + k] += value;
       }
     });
   plain.seen.passes = at.passes;
@@ -91,26 +99,30 @@ PassHalves halves_of(const Film& film, const std::vector<uint32_t>& squares) {
   for (const uint32_t first : squares)
     for (uint32_t k = 0; k < square; ++k) {
       const size_t i = pixel_of(film, first, k);
-      out.sum.push_back(luminance(Rgb(film.camera_sum[i] + (film.splats ? film.splat_sum[i] : glm::dvec3(0)))));
-      out.half.push_back(luminance(Rgb(film.half_sum[i])));
+      out.sum.push_back(film.camera_sum[i] + (film.splats ? film.splat_sum[i] : glm::dvec3(0)));
+      out.half.push_back(film.half_sum[i]);
     }
   return out;
 }
 
 // One half of the passes less the other: what the sum is off by, in expectation.
-double difference(const PassHalves& h, size_t pixel) { return 2 * h.half[pixel] - h.sum[pixel]; }
+glm::dvec3 difference(const PassHalves& h, size_t pixel) { return 2.0 * h.half[pixel] - h.sum[pixel]; }
+
+glm::dvec3 squared(const glm::dvec3& x) { return x * x; }
 
 struct Square {
-  double mean = 0, variance = 0;  // of the mean
+  glm::dvec3 radiance{0};
+  double mean = 0, variance = 0;  // of its luminance
 };
 
 Square square_of(const PassHalves& h, size_t first) {
   const double samples = double(h.passes) * square;
   Square s;
   for (size_t i = first; i < first + square; ++i) {
-    s.mean += h.sum[i] / samples;
-    s.variance += sqr(difference(h, i) / samples);
+    s.radiance += h.sum[i] / samples;
+    s.variance += sqr(luminance(difference(h, i)) / samples);
   }
+  s.mean = luminance(s.radiance);
   return s;
 }
 
@@ -130,6 +142,19 @@ Mean mean_of(const std::vector<double>& x) {
   return {mean, std::sqrt(std::max(square_sum / n - sqr(mean), 0.0) / n)};
 }
 
+// From path tracing's error, its deviation, and the guided integrator's. A single firefly may be all that there is to
+// see in a first look: then there is a second one.
+void decide(double error, double deviation, double guided, double samples, uint32_t passes, Plain& plain) {
+  const bool first = passes == first_look;
+  const double most = error + 2 * deviation, least = first ? error - 2 * deviation : most;
+  const double too_much = first ? hopeless : passes < settling ? much_worse : worse;
+  plain.passes = passes, plain.pace = samples / passes;
+  plain.guided_error = guided * passes, plain.plain_error = error * samples;
+  plain.ratio = guided > 0 ? most / guided : 0;
+  plain.taken = plain.ratio > 0 && plain.ratio < (first ? far_better : better) && most * samples < tame;
+  plain.settled = plain.taken || passes == last_look || least > too_much * guided || least * samples > wild;
+}
+
 PassHalves operator-(PassHalves a, const PassHalves& b) {
   a.passes -= b.passes;
   for (size_t i = 0; i < a.sum.size(); ++i) a.sum[i] -= b.sum[i], a.half[i] -= b.half[i];
@@ -146,7 +171,8 @@ void doubt_plain(bool merges, RenderState& state) {
   const PassHalves guided = halves_of(plain.guided, all), since = halves_of(film, all) - guided;
   const PlainLook look = compare_halves(guided, since);
   const double passes = since.passes;
-  plain.taken = look.plain * passes + missed_by_plain(look, merges) * std::min(passes, rarest) <= turned_wild;
+  plain.taken = (look.plain + 2 * look.deviation) * passes + missed_by_plain(look, merges) * std::min(passes, rarest) <=
+                turned_wild;
   if (!plain.taken) {
     film = std::move(plain.guided);
     plain.returned = since.passes;
@@ -160,18 +186,18 @@ void doubt_plain(bool merges, RenderState& state) {
 PlainLook compare_halves(const PassHalves& guided, const PassHalves& plain) {
   PlainLook out;
   const double pixels = double(guided.sum.size()), n = guided.passes;
-  const double mean = std::accumulate(guided.sum.begin(), guided.sum.end(), 0.0) / (n * pixels);
-  if (!(mean > 0) || !(mean < infinity)) return out;
-  const double scale = exposed / mean;
+  const double light = luminance(std::accumulate(guided.sum.begin(), guided.sum.end(), glm::dvec3(0)) / (n * pixels));
+  if (!(light > 0) || !(light < infinity)) return out;
+  const double scale = exposed / light;
   std::vector<double> errors[2], biases;
   for (size_t first = 0; first < guided.sum.size(); first += square) {
     const Square a = square_of(guided, first), b = square_of(plain, first);
     const double level = scale * a.mean;
     // A pixel counts half, so that fireflies hardly excuse themselves.
     for (size_t i = first; i < first + square; ++i) {
-      const double of = sqr(0.5 * (level + scale * guided.sum[i] / n)) + dark;
-      errors[0].push_back(sqr(scale * difference(guided, i) / n) / of);
-      errors[1].push_back(sqr(scale * difference(plain, i) / plain.passes) / of);
+      const glm::dvec3 of = squared(0.5 * scale * (a.radiance + guided.sum[i] / n)) + dark;
+      errors[0].push_back(mean(squared(scale * difference(guided, i) / n) / of));
+      errors[1].push_back(mean(squared(scale * difference(plain, i) / double(plain.passes)) / of));
     }
     const double off = a.mean - b.mean, variance = a.variance + b.variance;
     biases.push_back(sqr(scale) * (sqr(off) - variance) / (sqr(level) + dark));
@@ -181,7 +207,7 @@ PlainLook compare_halves(const PassHalves& guided, const PassHalves& plain) {
   }
   trim(errors[0]), trim(errors[1]);
   const Mean own = mean_of(errors[0]), other = mean_of(errors[1]), bias = mean_of(biases);
-  out.guided = own.value, out.plain = other.value + 2 * other.deviation;
+  out.guided = own.value, out.plain = other.value, out.deviation = other.deviation;
   out.missed = std::max(out.missed, 0.0), out.bias = std::max(bias.value - bias.deviation, 0.0);
   return out;
 }
@@ -212,21 +238,14 @@ void try_plain(const Job& job, const std::string& integrator, std::vector<Scratc
   const Counters& n = state.stats.counters;
   const double cost = ray_cost(integrator) * double(ray_count(n)) / double(n.camera_paths);
   const double samples = double(plain.seen.passes) * double(plain.seen.sum.size());
-  const double pace = std::clamp(cost * samples / (ray_cost("path") * double(plain.rays)), 1.0, fastest);
+  const double pace = std::clamp(cost * samples / (path_ray * double(plain.rays)), 1.0, fastest);
   trace_to(uint32_t(pace * film.passes / 2) * 2, without, film, squares, scratches, plain);
   const PlainLook look = compare_halves(halves_of(film, squares), plain.seen);
   const double passes = plain.seen.passes;
   const double guided = merges ? blur * (look.guided + look.bias) : look.guided;
   plain.missed =
       std::max(missed_by_plain(look, merges) * passes, 0.5 * plain.missed);  // twice the samples would have shown it
-  const double error = look.plain + plain.missed / passes;
-  plain.passes = film.passes;
-  plain.ratio = guided > 0 ? error / guided : 0;
-  const double enough = film.passes == first_look ? far_better : better;
-  plain.taken = plain.ratio > 0 && plain.ratio < enough && error * passes < tame;
-  const double most = film.passes == first_look ? hopeless : much_worse;
-  plain.settled = plain.taken || film.passes == last_look || plain.ratio > most || error * passes > wild ||
-                  (film.passes >= settling && plain.ratio > worse);
+  decide(look.plain + plain.missed / passes, look.deviation, guided, passes, film.passes, plain);
   if (plain.settled) plain.seen = {};
   if (plain.taken && film.splats) plain.guided = film, plain.ledger = state.stats.ledger;
 }

@@ -1,34 +1,29 @@
-// Leave out what a scene does not need: a pilot tells which integrator comes to a given error first.
+// Leave out what a scene does not need: what it does not contain, what there is no time for, and what its first passes
+// show that it can do without.
 
 #include "ajar/render/plan.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <thread>
 
 #include "ajar/core/error.h"
-#include "ajar/render/trials.h"
 
 namespace ajar {
 namespace {
 
-// From the simplest to the fullest.
-struct Candidate {
-  const char* name;
-  double sample;  // [us] about, before it is measured: for the pilot's size
-  bool light_subpaths, guided;
-};
-constexpr Candidate candidates[] = {{"path", 2, false, false},
-                                    {"guided-path", 5, false, true},
-                                    {"bdpt", 6.5, true, false},
-                                    {"guided-bdpt", 10, true, true}};
-constexpr uint32_t trial_passes = 12;    // that count
-constexpr double least_pixels = 600;     // below, a pilot says little
-constexpr double first_guess = 20;       // CPU seconds of a render whose end its noise alone decides
-constexpr double hysteresis = 0.9;       // what guides has to be this much better than what does not
-constexpr double still_to_learn = 0.75;  // of a guided integrator's price: it goes on learning where the pilot ends
+constexpr double sample_of_guided = 12, sample_of_bdpt = 6.5;  // [us] about
+// CPU time that a pixel has to have for learning to pay [us]: below, guided-bdpt leaves more than bdpt and path do, in
+// the mean over scenes (docs/results/plan.md).
+constexpr double least_time = 150;
+constexpr double pilot_share = 0.04;   // of the budget
+constexpr double first_guess = 60;     // CPU seconds of a render whose end its noise alone decides
+constexpr double least_pixels = 2500;  // below, a pilot says little
+constexpr uint32_t pilot_passes = 17;  // the last look is before the last of them
+constexpr uint32_t pilot_lessons = 8;  // about, in time of passes
+
+double pixels_of(const Camera& camera) { return double(camera.width) * camera.height; }
 
 // CPU seconds; infinite where a target for the noise alone ends the render.
 double budget_of(const RenderOptions& o, double pixels) {
@@ -36,84 +31,9 @@ double budget_of(const RenderOptions& o, double pixels) {
   double most = infinity;
   if (o.cpu_seconds > 0) most = std::min(most, o.cpu_seconds);
   if (o.seconds > 0) most = std::min(most, o.seconds * threads);
-  const double typical = candidates[2].sample * 1e-6;
-  if (const uint32_t passes = most_passes(o); passes > 0) most = std::min(most, passes * pixels * typical);
+  if (const uint32_t passes = most_passes(o); passes > 0)
+    most = std::min(most, passes * pixels * sample_of_bdpt * 1e-6);
   return most;
-}
-
-// CPU seconds of all trials for a pixel.
-double pilot_price() {
-  double per_pixel = 0;
-  for (const Candidate& c : candidates)
-    per_pixel += (trial_passes + (c.guided ? blind_generations : 0)) * c.sample * 1e-6;
-  return per_pixel;
-}
-
-// Scales the camera to so many pixels as the pilot of such a budget can afford; false where that is too few.
-bool set_pilot_size(Camera& camera, double budget) {
-  if (budget < least_budget(camera)) return false;
-  const double full = double(camera.width) * camera.height;
-  const double wanted = std::min(pilot_share * budget / pilot_price(), full);
-  const double scale = std::sqrt(wanted / full);
-  set_size(camera, std::max(1, int(camera.width * scale)), std::max(1, int(camera.height * scale)));
-  return true;
-}
-
-// What an integrator sees in passes after those whose numbers guided ones drop, and what a sample costs. walls: where
-// the first guided one found that they divide cells.
-Trial run_trial(const Scene& scene, const Accel& accel, RenderOptions options, const Candidate& c,
-                const Monitor& monitor, CellTable& walls, Sight& sight) {
-  options.integrator = c.name;
-  options.spp = trial_passes;
-  options.seconds = options.cpu_seconds = options.noise = 0;
-  options.techniques = options.leaves_out = false;
-  options.learn.train = 0;
-  RenderState state = start_render(scene, options);
-  CellTable& table = state.learning.fields.table;
-  table.cuts = walls.cuts, table.compartments = walls.compartments, table.portals = walls.portals;
-  if (!c.guided) state.film.dropped = blind_generations;
-  render(scene, accel, options, state, [&](const RenderState& now) {
-    if (now.film.chunks == 0 && now.film.dropped > 0 && now.film.passes > sight.passes.size()) look(now.film, sight);
-    return monitor(now);
-  });
-  if (c.guided) walls.cuts = table.cuts, walls.compartments = table.compartments, walls.portals = table.portals;
-  const Counters& n = state.stats.counters;
-  const double rays = double(n.camera_rays + n.light_rays + n.shadow_rays);
-  Trial t;
-  t.integrator = c.name, t.passes = state.film.passes;
-  t.cost = rays / std::max(double(n.camera_paths), 1.0) * ray_cost(c.name);
-  return t;
-}
-
-const Trial* find(const Plan& plan, const std::string& name) {
-  for (const Trial& t : plan.trials)
-    if (t.integrator == name) return &t;
-  return nullptr;
-}
-
-const Candidate& candidate_of(const std::string& name) {
-  return *std::find_if(std::begin(candidates), std::end(candidates),
-                       [&](const Candidate& c) { return name == c.name; });
-}
-
-std::string times(const Plan& plan, const char* with, const char* without) {
-  const Trial *a = find(plan, with), *b = find(plan, without);
-  if (!a || !b) return "not measured";
-  if (!(a->price() < infinity) && !(b->price() < infinity))
-    return fmt::format("{} and {} saw black alone", with, without);
-  if (!(a->price() < infinity) || !(b->price() > 0)) return "not measured";
-  return fmt::format("{} takes {:.2g} times the time of {} to equal error", with, a->price() / b->price(), without);
-}
-
-void add_measured_parts(Plan& plan) {
-  const Candidate& chosen = candidate_of(plan.integrator);
-  plan.parts.push_back({"light-subpaths", chosen.light_subpaths,
-                        chosen.guided ? times(plan, "guided-bdpt", "guided-path") : times(plan, "bdpt", "path")});
-  const std::string guiding =
-      chosen.light_subpaths ? times(plan, "guided-bdpt", "bdpt") : times(plan, "guided-path", "path");
-  plan.parts.push_back({"camera-guiding", chosen.guided, guiding});
-  plan.parts.push_back({"light-guiding", chosen.guided && chosen.light_subpaths,
-                        chosen.light_subpaths ? guiding : "there are no light subpaths"});
 }
 
 // What the scene does not contain costs nothing: the tracer asks once per scene or material, not per path.
@@ -129,90 +49,78 @@ void add_contained_parts(const Scene& scene, Plan& plan) {
   add("textures", !scene.textures.empty(), fmt::format("{}", scene.textures.size()), "none in the scene");
 }
 
-double expected_price(const Trial& t) { return t.price() * (is_guided(t.integrator) ? still_to_learn : 1); }
-
-// Not that light subpaths be much better: what paths without them miss, as caustics, makes those look quiet, never the
-// others.
-void choose(Plan& plan) {
-  const Trial* best = nullptr;
-  const auto handicap = [](const Trial& t) { return is_guided(t.integrator) ? 1 : hysteresis; };
-  for (const Trial& t : plan.trials)
-    if (t.price() < infinity && (!best || handicap(t) * expected_price(t) < handicap(*best) * expected_price(*best)))
-      best = &t;
-  if (best) plan.integrator = best->integrator;
+void set_learned_parts(Plan& plan, bool light, bool guided, const std::string& why) {
+  const std::pair<const char*, bool> parts[] = {
+      {"light-subpaths", light}, {"camera-guiding", guided}, {"light-guiding", guided}};
+  for (size_t i = 0; i < std::size(parts); ++i) plan.parts[i] = {parts[i].first, parts[i].second, why};
 }
 
-// CPU seconds to the noise that is asked for, by the best of the trials.
-double time_to(double noise, double pixels, const Plan& plan) {
-  double least = infinity;
-  for (const Trial& t : plan.trials) least = std::min(least, t.price());
-  return least * 1e-6 * pixels / noise;
+// Scales the camera to so many pixels as the pilot of such a budget can afford.
+void set_pilot_size(Camera& camera, double budget) {
+  const double price = (pilot_passes + pilot_lessons) * sample_of_guided * 1e-6;
+  const double full = pixels_of(camera);
+  const double wanted = std::min(std::max(pilot_share * budget / price, least_pixels), full);
+  const double scale = std::sqrt(wanted / full);
+  set_size(camera, std::max(1, int(camera.width * scale)), std::max(1, int(camera.height * scale)));
 }
 
-// Factor on the time to equal error, of so many passes as the budget pays for. Small images lose more than
-// blind_generations, but what their fields go on to learn makes up for it.
-double waste_of(double passes, double pixels) {
-  const double lost = std::min(passes_lost(size_t(pixels)), double(blind_generations));
-  return passes > lost ? passes / (passes - lost) : infinity;
-}
-
-// All trials at the size that the budget allows, the camera's left as it was; false where that is too small.
-bool run_pilot(Scene& scene, const Accel& accel, const RenderOptions& options, double budget, const Monitor& monitor,
-               Plan& plan) {
-  const Camera camera = scene.camera;
-  const double pixels = double(camera.width) * camera.height;
-  if (!set_pilot_size(scene.camera, budget)) return false;
-  plan.width = scene.camera.width, plan.height = scene.camera.height;
-  std::vector<Sight> sights;
-  CellTable walls;
-  plan.trials.clear();
-  bool go_on = true;
-  const Monitor watch = [&](const RenderState& state) { return go_on = !monitor || monitor(state); };
-  for (const Candidate& c : candidates) {
-    Sight sight;
-    Trial trial = run_trial(scene, accel, options, c, watch, walls, sight);
-    if (!go_on) break;
-    plan.trials.push_back(std::move(trial));
-    sights.push_back(std::move(sight));
-  }
-  scene.camera = camera;
-  const std::vector<Judgement> judgements = judge(sights);
-  for (size_t i = 0; i < sights.size(); ++i) {
-    Trial& t = plan.trials[i];
-    t.error = judgements[i].error, t.deviation = judgements[i].deviation, t.unseen = judgements[i].unseen;
-    if (candidates[i].guided) t.waste = waste_of(budget * 1e6 / (pixels * t.cost), pixels);
-  }
-  return true;
+std::string describe(const Pilot& p) {
+  if (p.passes == 0) return "the pilot saw nothing to compare";
+  return fmt::format("path tracing leaves {:.{}f} times the error after equal time{}", p.ratio, p.ratio < 10 ? 2 : 0,
+                     p.settled ? "" : "; the render looks again");
 }
 
 }  // namespace
 
-double least_budget(const Camera& camera) {
-  return std::min(least_pixels, double(camera.width) * camera.height) * pilot_price() / pilot_share;
+double Pilot::saved_seconds() const {
+  return ratio > 0 && budget < infinity ? budget * (std::max(ratio, 1 / ratio) - 1) : 0;
 }
 
-Plan make_plan(Scene& scene, const Accel& accel, const RenderOptions& options, const Monitor& monitor) {
+double least_budget(const Camera& camera) { return least_time * 1e-6 * pixels_of(camera); }
+
+Plan make_plan(const Scene& scene, const RenderOptions& options) {
   Plan plan;
-  plan.integrator = "guided-bdpt";
-  const double wall = wall_seconds(), cpu = process_cpu_seconds();
-  const double pixels = double(scene.camera.width) * scene.camera.height, budget = budget_of(options, pixels);
-  const bool open = !(budget < infinity);
+  plan.parts.resize(3);
   if (scene.lights.empty() || options.max_depth == 1) {  // nothing to join
     plan.integrator = "path";
-  } else if (run_pilot(scene, accel, options, open ? first_guess : budget, monitor, plan)) {
-    const double needed = open ? time_to(options.noise, pixels, plan) : 0;
-    if (plan.trials.size() == std::size(candidates) && needed > 2 * first_guess && needed < infinity)
-      run_pilot(scene, accel, options, needed, monitor, plan);
-    choose(plan);
+    set_learned_parts(plan, false, false,
+                      options.max_depth == 1 ? "paths of one edge see lights alone" : "the scene has no light");
+  } else if (budget_of(options, pixels_of(scene.camera)) < least_budget(scene.camera)) {
+    plan.integrator = "bdpt";
+    set_learned_parts(plan, true, false, "there is no time to learn");
+    plan.parts[0].why = "finds caustics, and what shines through a gap";
   } else {
-    plan.integrator = "bdpt";  // learning takes longer than there is
+    plan.integrator = "guided-bdpt";
+    set_learned_parts(plan, true, true, "until path tracing turns out to be enough");
   }
-  add_measured_parts(plan);
-  if (options.max_depth == 1)
-    for (Part& p : plan.parts) p.why = "paths of one edge see lights alone";
   add_contained_parts(scene, plan);
-  plan.seconds = wall_seconds() - wall, plan.cpu_seconds = process_cpu_seconds() - cpu;
   return plan;
+}
+
+void run_pilot(Scene& scene, const Accel& accel, const RenderOptions& options, const Monitor& monitor, Plan& plan) {
+  if (plan.integrator != "guided-bdpt") return;
+  const double cpu = process_cpu_seconds();
+  const Camera camera = scene.camera;
+  Pilot p;
+  p.budget = budget_of(options, pixels_of(camera));
+  set_pilot_size(scene.camera, p.budget < infinity ? p.budget : first_guess);
+  p.width = scene.camera.width, p.height = scene.camera.height;
+  RenderOptions small = options;
+  small.integrator = plan.integrator, small.spp = pilot_passes, small.leaves_out = true;
+  small.seconds = small.cpu_seconds = small.noise = 0;
+  RenderState state = start_render(scene, small);
+  bool go_on = true;
+  render(scene, accel, small, state,
+         [&](const RenderState& now) { return (go_on = !monitor || monitor(now)) && !now.plain.settled; });
+  scene.camera = camera;
+  if (!go_on) return;
+  const Plain& plain = state.plain;
+  p.passes = plain.ratio > 0 ? plain.passes : 0, p.ratio = plain.ratio;
+  p.plain = plain.taken, p.settled = plain.settled;
+  p.guided = plain.guided_error, p.path = plain.plain_error, p.path_for_one = plain.pace;
+  p.cpu_seconds = process_cpu_seconds() - cpu;
+  set_learned_parts(plan, !p.plain, !p.plain, describe(p));
+  plan.pilot = p;
 }
 
 void apply_parts(const std::vector<std::string>& parts, RenderOptions& options) {

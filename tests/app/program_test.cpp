@@ -76,8 +76,6 @@ TEST_F(Program, InterruptedPilotsPlanNothing) {
   };
   EXPECT_EQ(run(after_a_while("\"$ajar\" plan box.xml --cpu-time 10h")), 143) << said();
   EXPECT_EQ(kit::bytes_of(folder / "out"), "");
-  EXPECT_EQ(run(after_a_while("\"$ajar\" render box.xml --plan auto --cpu-time 10h -q -o a.exr")), 143) << said();
-  EXPECT_FALSE(is_there("a.exr"));
   EXPECT_EQ(run(after_a_while("\"$ajar\" animate box.xml --frames 2 --spp 100000000 -q -o f/f_%d.exr")), 143) << said();
 }
 

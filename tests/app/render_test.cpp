@@ -263,13 +263,11 @@ TEST(PlanCommand, SaysWhatItKnows) {
   };
   EXPECT_EQ(plan({"-7", "--max-depth"}), "--max-depth -7: -1 for unlimited, 1 or more edges otherwise");
   EXPECT_EQ(plan({"0", "--max-depth"}), "--max-depth 0: -1 for unlimited, 1 or more edges otherwise");
-  EXPECT_EQ(plan({"1s", "--cpu-time"}),
-            "ajar: note: --cpu-time 1s is too short to measure anything; give 6s or more\n");
+  EXPECT_EQ(plan({"1s", "--cpu-time"}), "ajar: note: --cpu-time 1s is too short to learn anything; give 10s or more\n");
   Plan black;
-  black.trials.resize(1);
-  black.trials[0].error = infinity;
+  black.pilot.emplace();
   EXPECT_EQ(describe(black).find("inf"), std::string::npos);
-  EXPECT_NE(describe(black).find("no trial saw any light"), std::string::npos);
+  EXPECT_NE(describe(black).find("no light was seen"), std::string::npos);
 }
 
 TEST_F(Render, WhatIsNoTargetIsAnError) {

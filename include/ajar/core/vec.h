@@ -33,5 +33,8 @@ inline float safe_sqrt(float x) { return std::sqrt(std::max(x, 0.0f)); }
 
 /// Relative luminance of linear Rec. 709 RGB (ITU-R BT.709).
 inline float luminance(const Rgb& c) { return 0.212671f * c.x + 0.715160f * c.y + 0.072169f * c.z; }
+inline double luminance(const glm::dvec3& c) { return 0.212671 * c.x + 0.715160 * c.y + 0.072169 * c.z; }
+/// Over the channels, as errors are averaged (docs/notation.md, E1).
+inline double mean(const glm::dvec3& channels) { return (channels.x + channels.y + channels.z) / 3; }
 
 }  // namespace ajar
