@@ -2,6 +2,7 @@
 // sampling. Without light paths (WalkOptions) it is path tracing that keeps its vertices, and can teach: s = 0 and s
 // = 1.
 
+#include "ajar/path/arrival.h"
 #include "job.h"
 
 namespace ajar {
@@ -193,16 +194,6 @@ void join_next_event(Work& work, float worth) {
   if (!job.guided) record_place(v.guide, v.ng, *job.training, work.scratch.sightings);
 }
 
-// Joiner::before of the camera subpath's last vertex, as if it scattered evenly.
-double count_before(const WalkOptions& walk, const Subpath& camera) {
-  const Vertex &v = camera[camera.n - 1], &last = camera[camera.n - 2];
-  const double first = walk.light_paths, joins = last.seen ? walk.seen_share : walk.inner_share;
-  const double share = last.delta ? 0 : raise(walk.heuristic, camera.n == 2 ? first : joins);
-  const double back = double(std::abs(v.guide.wo_local.z) * inv_pi) * v.back;
-  const double all = camera.n == 2 ? share : extend(share, raise(walk.heuristic, ratio(back, last.own)), v.sum);
-  return walk.heuristic == Heuristic::power ? std::sqrt(all) : all;
-}
-
 // Share of the pixel's light that joins could bring the vertex: all that is not next-event estimation's.
 float share_of_joins(const Fields& fields, const Guide& guide, float worth) {
   const FieldCell& cell = fields.q.cells[guide.cell];
@@ -243,13 +234,19 @@ void join_stored(Work& work, float worth) {
   }
 }
 
+// What teaches goes on, and takes its numbers.
+bool goes_on(const Job& job, Sample& sample, Subpath& camera, Walk& walk) {
+  if (!sample.teaches) return is_worth_it(job.walk, sample.sampler, camera, walk);
+  sample.sampler.skip();
+  return true;
+}
+
 // All joins at the camera subpath's last vertex.
-void join_all(Work& work, const Surface& surface) {
+void join_all(Work& work) {
   const Job& job = work.job;
   const Subpath& camera = work.scratch.camera;
   const Subpath& light = work.scratch.light;
   const int t = camera.n;
-  join_surface(work, surface);
   if (t > job.walk.max_edges || !connectable(camera[t - 1].guide)) return;
   const float worth = worth_of(work, camera[t - 1]);
   join_next_event(work, worth);
@@ -315,7 +312,9 @@ void trace_bdpt(const Job& job, Sample& sample, Scratch& scratch) {
       join_escapes(work, walk);
       break;
     }
-    join_all(work, surface);
+    join_surface(work, surface);
+    if (scratch.pool && !goes_on(job, sample, camera, walk)) break;
+    join_all(work);
   } while (camera.n <= job.walk.max_edges && scatter(job.walk, sample.sampler, camera, walk));
   charge(scratch, scratch.ledger->camera_ticks);
   if (!sample.teaches || !job.guided) return;

@@ -76,6 +76,9 @@ void read_face(Cursor& in, ObjFile& out, uint32_t material) {
     if (!in.ends_token()) in.fail(fmt::format("\"{}\" after a corner of a face", in.token()));
     out.corners.push_back(c);
   }
+  // Elsewhere such faces are left out, as they have no area.
+  if (const size_t corners = out.corners.size() - out.faces.back().first; in.p == in.end && corners < 3)
+    in.fail(fmt::format("the file ends in a face of {} corner{}; is it whole?", corners, corners == 1 ? "" : "s"));
 }
 
 // Index of a material by its name, a new one where there is none yet.

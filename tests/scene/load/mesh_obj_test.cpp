@@ -153,6 +153,10 @@ TEST(MeshObj, errors_name_file_line_and_culprit) {
   EXPECT_NE(error_of("vt").find("a.obj:1: vt has no"), std::string::npos);
   EXPECT_NE(error_of("vn 1 2").find("a.obj:1: vn has 2"), std::string::npos);
   EXPECT_EQ(error_of(three + "\nf 1 2 4\n"), "a.obj:5: f names v 4 of 3; is the file whole?");
+  for (const char* rest : {"f", "f ", "f 1", "f 1 2"})
+    EXPECT_NE(error_of(three + "f 1 2 3\n" + rest).find("the file ends in a face of "), std::string::npos) << rest;
+  EXPECT_EQ(error_of(three + "f 1 2\n"), "no error") << "a line may have no area";
+  EXPECT_EQ(error_of(three + "f 1 2 3"), "no error");
   EXPECT_EQ(error_of(three + "f 1/1 2/1 3/1\n"), "a.obj:4: f names vt 1 of 0; is the file whole?");
   EXPECT_EQ(error_of(three + "f 1//9 2//1 3//1\n"), "a.obj:4: f names vn 9 of 0; is the file whole?");
   EXPECT_EQ(error_of(three + "f 1 2 0\n"), "a.obj:4: \"0\": there is no such v; 3 so far");

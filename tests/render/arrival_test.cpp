@@ -1,0 +1,54 @@
+// Roulette on arrival keeps what a camera subpath brings in the mean, and ends what others bring as well.
+#include "ajar/path/arrival.h"
+
+#include "bytes.h"
+
+namespace ajar {
+namespace {
+
+// Camera subpaths of a scene whose fields are learned, each with the ray's walk, at every vertex where they arrive.
+template <class Visit>
+void at_arrivals(const Scene& scene, const Accel& accel, const WalkOptions& options, int paths, const Visit& visit) {
+  Subpath camera;
+  for (int i = 0; i < paths; ++i) {
+    Sampler sampler = make_sampler(SamplerKind::independent, 7, Side::camera, uint64_t(i), 0);
+    Walk walk;
+    const Vec2 raster = sampler.next2() * Vec2(scene.camera.width, scene.camera.height);
+    start_camera(scene, options, raster, sampler.next2(), camera, walk);
+    Surface surface;
+    while (camera.n < 8 && step(scene, accel, options, camera, walk, surface)) {
+      visit(camera, walk);
+      if (!scatter(options, sampler, camera, walk)) break;
+    }
+  }
+}
+
+TEST(Arrival, KeepsTheMeanAndEndsWhatJoinsBeforeBring) {
+  const Scene scene = two_rooms(20);
+  const Accel accel(scene);
+  const RenderState state = rendered(scene, accel, options_of("guided-bdpt", 24));
+  WalkOptions options;
+  options.fields = &state.learning.fields;
+  options.inner_share = 2, options.seen_share = 1000, options.light_paths = 500;
+  int ended[9] = {}, tried[9] = {};
+  double before = 0, after = 0, square = 0;
+  at_arrivals(scene, accel, options, 4000, [&](const Subpath& camera, const Walk& walk) {
+    Subpath copy = camera;
+    Walk gone_on = walk;
+    Sampler sampler =
+        make_sampler(SamplerKind::independent, 8, Side::camera, uint64_t(tried[camera.n]), uint32_t(camera.n));
+    const float was = luminance(camera[camera.n - 1].beta);
+    const bool on = is_worth_it(options, sampler, copy, gone_on);
+    const double is = on ? double(luminance(copy[copy.n - 1].beta)) : 0;
+    ++tried[camera.n], ended[camera.n] += !on;
+    before += double(was), after += is, square += sqr(is - double(was));
+  });
+  EXPECT_NEAR(after, before, 4 * std::sqrt(square));
+  EXPECT_GT(std::sqrt(square), 1) << "some end";
+  EXPECT_LT(std::sqrt(square), 0.03 * before);
+  EXPECT_EQ(ended[2], 0) << "what the lens sees is not joined before";
+  EXPECT_GT(10 * ended[3], tried[3]);
+}
+
+}  // namespace
+}  // namespace ajar
