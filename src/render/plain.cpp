@@ -20,9 +20,9 @@ constexpr double dark = 0.01;                         // of relMSE
 constexpr double least_miss = 0.1;                    // of a square's light
 constexpr double fastest = 16;                        // of path tracing: passes for one of the guided integrator
 // Of the guided integrator's error after equal time: path tracing takes over; less while fields are young.
-constexpr double far_better = 0.9, better = 1.05;
+constexpr double far_better = 0.75, better = 0.85;
 // It is not looked at again: after so many passes, before, or at once.
-constexpr double worse = 1.6, much_worse = 2, hopeless = 8;
+constexpr double worse = 1.4, much_worse = 2, hopeless = 8;
 constexpr uint32_t settling = 16;
 // Factor on the error of what merges: blur within squares is not seen. By errors against references
 // (docs/results/plan.md).
