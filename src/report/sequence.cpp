@@ -127,10 +127,10 @@ std::string sequence_csv(const std::vector<FrameFigures>& frames) {
     out += fmt::format("{}", f.frame);
     for (const std::string& name : names) {
       const auto found = f.parameters.find(name);
-      out += "," + (found == f.parameters.end() ? "" : cell(found->second));
+      out += fmt::format(",{}", found == f.parameters.end() ? "" : cell(found->second));
     }
     for (const double x : {f.seconds, f.cpu_seconds, f.spp, f.mean, f.relmse, f.relmse_trimmed, f.flicker})
-      out += "," + cell(x);
+      out += fmt::format(",{}", cell(x));
     out += "\n";
   }
   return out;
