@@ -78,12 +78,6 @@ uint32_t recorded_one_in(const Learning& l, const Film& film) {
   return l.train > 0 || l.fields.generation < blind_generations ? 1 : young_shares(film.pixels()).recorded;
 }
 
-double passes_lost(size_t pixels) {
-  constexpr double blind = blind_generations / 2, others = young_generations - blind_generations;
-  const YoungShares one_in = young_shares(pixels);
-  return 2 * (blind / one_in.first + blind / one_in.later) + others / one_in.recorded;
-}
-
 bool is_recorded(const Learning& learning, uint64_t pixel, uint32_t pass, uint32_t one_in) {
   return !is_frozen(learning) && hash(pixel, pass) % one_in == 0;
 }
