@@ -32,6 +32,7 @@ StoredFields learned(const Scene& scene, uint32_t passes) {
   o.sampler = SamplerKind::independent;
   o.seed = 77;
   o.spp = passes;
+  o.learn.least_contrast = 2;
   const Accel accel(scene);
   RenderState state = start_render(scene, o);
   render(scene, accel, o, state, nullptr);
@@ -54,7 +55,7 @@ StoredFields upside_down() {
       uint32_t before = 0;
       for (size_t i = 0; i < 16; ++i) node.before[i] = uint16_t(before), before += next[i];
     }
-    for (FieldCell& cell : field->cells) cell.mix = 0.8f;
+    for (FieldCell& cell : field->cells) cell.mix = 0.8f, cell.even = 0;
   }
   return stored;
 }

@@ -19,6 +19,7 @@ RenderOptions options_of(const Case& c, const std::string& integrator, double pa
   o.sampler = SamplerKind::independent;  // so that the spread of renders is their variance
   o.max_depth = c.max_depth;
   o.spp = uint32_t(std::lround(c.passes * passes));
+  o.learn.least_contrast = 2;  // fields guide wherever they may
   if (c.tune) c.tune(o.learn);
   return o;
 }

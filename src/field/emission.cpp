@@ -11,7 +11,7 @@ uint32_t emission_cell(const Fields* fields, const LightPoint& point, float& mix
   mix = 0;
   if (!fields || point.infinite || point.delta_position) return none;
   const uint32_t cell = find(fields->table, point.p, point.n).cell;
-  if (cell != none) mix = fields->w.cells[cell].mix;
+  if (cell != none) mix = mix_of(fields->w.cells[cell]);
   return mix > 0 ? cell : none;
 }
 

@@ -89,15 +89,13 @@ void place(const Surface& surface, Guide& out) {
   if (at.cell != none) fetch(fields, at.cell);
 }
 
-float mix_of(const Field& field, uint32_t cell) { return field.cells[cell].even ? 0 : field.cells[cell].mix; }
-
 void mix_fields(Guide& out) {
   if (out.cell == none || !out.bsdf.has_smooth) return;
   const float share = breadth(out.bsdf);
   if (!(share > 0)) return;
   const Field& other = field_of_other(out);
-  out.mix = share * mix_of(field_of(out), out.cell);
-  out.mix_other = share * mix_of(other, out.cell);
+  out.mix = share * mix_of(field_of(out).cells[out.cell]);
+  out.mix_other = share * mix_of(other.cells[out.cell]);
   if (out.mix_other > 0) out.back = pdf(*out.fields, other, out.cell, out.p, out.wo);
 }
 

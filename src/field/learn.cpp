@@ -90,9 +90,6 @@ FieldCell learn_portal(Work& w, const FieldCell& old, bool moved, Trees& out) {
   return next;
 }
 
-// Below, a field guides hardly better than the surface does by itself, and takes its time: it is left out.
-constexpr float least_contrast = 2;
-
 // Irradiance that next-event estimation brings, or importance that the lens itself gives, by all lessons.
 float direct_of(const Work& w, uint32_t cell) {
   const FieldCell& old = w.field->cells[cell];
@@ -130,7 +127,7 @@ FieldCell learn_cell(Work& w, uint32_t cell, double area, double paths, Trees& o
   w.tree.clear();
   take(*w.field, *w.tallies, w.options->forget, old.root, w.tree);
   const float bare = weigh(w.tree, w.structure, 0);
-  const bool even = w.structure == Structure::adaptive && contrast(w.tree) < least_contrast;
+  const bool even = w.structure == Structure::adaptive && contrast(w.tree) < w.options->least_contrast;
   const float floor = 0.03f * bare / pi;
   const float total = weigh(w.tree, w.structure, floor);
   next.mix = bare > 0 ? mix_for(*w.options, evidence(w.tree)) : 0;

@@ -7,7 +7,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind checkpoint_kind = {"AJARck16", "checkpoint", "render once with --checkpoint",
+constexpr FileKind checkpoint_kind = {"AJARck17", "checkpoint", "render once with --checkpoint",
                                       "start again without --resume"};
 
 // One list of fields for both ways.
@@ -111,7 +111,7 @@ void load_checkpoint(const std::string& path, const std::string& key, RenderStat
   if (!state.pyramid.kept) state.pyramid = {};
   r.value(state.pixels_per_light), r.value(state.effort);
   r.require(state.effort >= RenderState::least_effort && state.effort <= 1);
-  r.require(state.pixels_per_light == RenderState::most_light || state.pixels_per_light == RenderState::least_light);
+  r.require(state.pixels_per_light >= RenderState::most_light && state.pixels_per_light <= RenderState::least_light);
   state.plain.guided = state.film;  // for its place and filter, which are not in the file
   plain_fields(r, state.plain);
   r.require(state.plain.seen.half.size() == state.plain.seen.sum.size());

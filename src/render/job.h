@@ -170,21 +170,24 @@ inline void charge_join(Scratch& scratch, int s, int t) {
   charge(scratch, cost.ticks);
 }
 
-/// Notes what a join adds to its pixel.
-inline void gain(StrategyCost& cost, const Rgb& pixel) {
+/// Notes what a join adds to its pixel; its luminance.
+inline double gain(StrategyCost& cost, const Rgb& pixel) {
   ++cost.visible;
-  if (const float energy = luminance(pixel); std::abs(energy) < infinity) cost.energy += double(energy);
+  const float energy = luminance(pixel);
+  if (!(std::abs(energy) < infinity)) return 0;
+  cost.energy += double(energy);
+  return double(energy);
 }
 inline void gain(Scratch& scratch, int s, int t, const Rgb& pixel) { gain(scratch.ledger->at(s, t), pixel); }
 
 /// The same of a light path's splat, whose filter's integral is 1. What filters carry over the border of the film, one
 /// way and the other, is taken for equal.
-inline void gain_splat(const Job& job, Scratch& scratch, int s, const Splat& splat) {
+inline double gain_splat(const Job& job, Scratch& scratch, int s, const Splat& splat) {
   const Camera& c = job.scene->camera;
   const Vec2 at = splat.raster - Vec2(c.crop_x, c.crop_y);
   const bool inside = at.x >= 0 && at.y >= 0 && at.x < float(c.crop_width) && at.y < float(c.crop_height);
   const double pixels = double(c.crop_width) * c.crop_height;
-  gain(scratch, s, 1, inside ? splat.value * float(1 / pixels) : Rgb(0));
+  return gain(scratch.ledger->at(s, 1), inside ? splat.value * float(1 / pixels) : Rgb(0));
 }
 
 /// Law 6: only finite, non-negative values may go on; others are counted.

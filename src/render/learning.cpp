@@ -13,10 +13,11 @@ uint32_t blind(const Learning& l) { return l.train > 0 ? l.train : blind_generat
 bool is_young(const Learning& l) { return l.fields.generation < youth(l); }
 bool is_frozen(const Learning& l) { return l.train > 0 && !is_young(l); }
 
+// Once fields are no longer young: passes from one lesson to the next, and of how many paths one is recorded.
+uint32_t rarity(const Learning& l) { return rare_records << std::min(l.fields.generation - young_generations, 6u); }
+
 // Passes from one lesson to the next.
-uint32_t interval(const Learning& l) {
-  return is_young(l) ? l.lesson : rare_records << std::min(l.fields.generation - young_generations, 6u);
-}
+uint32_t interval(const Learning& l) { return is_young(l) ? l.lesson : rarity(l); }
 
 // Of how many pixels one is traced in the first two passes and in the other blind ones, and how many of the paths of
 // those that follow are recorded: so many pixels that enough are left, as far as that is possible.
@@ -74,7 +75,7 @@ uint32_t traced_one_in(const Learning& l, const Film& film) {
 }
 
 uint32_t recorded_one_in(const Learning& l, const Film& film) {
-  if (!is_young(l)) return rare_records;
+  if (!is_young(l)) return rarity(l);
   return l.train > 0 || l.fields.generation < blind_generations ? 1 : young_shares(film.pixels()).recorded;
 }
 

@@ -13,6 +13,7 @@ Ledger& Ledger::operator+=(const Ledger& o) {
   for (int s = 0; s <= most; ++s)
     for (int t = 0; t <= most; ++t) strategies[s][t] += o.strategies[s][t], merges[s][t] += o.merges[s][t];
   camera_ticks += o.camera_ticks, light_ticks += o.light_ticks, learn_ticks += o.learn_ticks;
+  caustics += o.caustics;
   return *this;
 }
 

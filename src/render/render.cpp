@@ -100,11 +100,14 @@ double light_paths_of(const Film& film, uint32_t from, uint32_t count, uint32_t 
   return sum;
 }
 
-// What a sample's error is (estimate_sample_error), above which an image is noisy.
-constexpr double noisy = 0.25;
+// What a sample's error is (estimate_sample_error), above which an image is noisy, and below which it is quiet; share
+// of the light that is caustics, which light subpaths alone find. Measured (docs/results/joins.md).
+constexpr double noisy = 0.25, quiet = 0.15, shining = 0.01;
 
-uint32_t pixels_per_light(const Film& film) {
-  return estimate_sample_error(film) < noisy ? RenderState::least_light : RenderState::most_light;  // (J5)
+uint32_t pixels_per_light(const Film& film, const Ledger& ledger) {
+  if (ledger.caustics > shining * total_energy(ledger)) return RenderState::most_light;  // (J5)
+  const double error = estimate_sample_error(film);
+  return error < quiet ? RenderState::least_light : error < noisy ? 4 : 2;
 }
 
 // What joins of a guided vertex count for in the weights: about as many are made of each, where it matters (J3).
@@ -131,7 +134,7 @@ float effort_for(const Ledger& ledger) {
 void plan_pass(bool joined, bool plain, RenderState& state, Job& job) {
   const Film& film = state.film;
   const bool looks = !plain && film.chunks == 0 && std::has_single_bit(film.passes);
-  if (joined && looks && film.passes >= 8) state.pixels_per_light = pixels_per_light(film);
+  if (joined && looks && film.passes >= 8) state.pixels_per_light = pixels_per_light(film, state.stats.ledger);
   if (const float effort = looks ? effort_for(state.stats.ledger) : 0; effort > 0) state.effort = effort;
   job.effort = state.effort;
   if (job.guided && job.light_half)
@@ -231,13 +234,17 @@ bool has_strategies(const std::string& integrator) {
   return trace != trace_path && trace != trace_light;
 }
 
+// Where no light vertices are joined, which bring what a cosine lobe finds badly: strata that could halve its variance
+// guide (G14).
+constexpr float alone_contrast = 2;
+
 LearnOptions learn_options(const RenderOptions& options) {
   LearnOptions o = options.learn;
   const Integrator& integrator = find_integrator(options.integrator);
   if (!integrator.guided)
     o.guided = Guided::neither;
   else if (!integrator.splats)
-    o.guided = Guided::camera;
+    o.guided = Guided::camera, o.least_contrast = std::min(o.least_contrast, alone_contrast);
   else if (integrator.vpls)
     o.guided = Guided::light;  // walks are short, and the price of a guide is not
   return o;

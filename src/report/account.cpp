@@ -84,6 +84,7 @@ void add_account(Json& record, const RenderState& state) {
   record["tracing"] = tracing_json(state.stats.ledger);
   if (!state.learning.fields.table.slots.empty()) record["fields"] = fields_json(state.learning, state.film);
   record["strategies"] = strategies_json(state.stats.ledger);
+  record["caustics"] = per(state.stats.ledger.caustics, total_energy(state.stats.ledger));
   if (const Json merges = merges_json(state.stats.ledger); !merges.empty()) record["merges"] = merges;
 }
 

@@ -53,14 +53,20 @@ TEST(Learn, ZerosPullDownAndSilenceDoesNot) {
 
 // What guides hardly better than the surface does by itself is left out.
 TEST(Learn, EvenFieldsDoNotGuide) {
-  const auto even = [](float brightest) {
+  const auto mix = [](float brightest, float least_contrast) {
     Lesson lesson(one_cell());
     for (int i = 0; i < 16; ++i) lesson.add(towards(i), i == 5 ? brightest : 1.0f, 1);
-    return lesson.learned(whole_strata()).q.cells[0].even;
+    LearnOptions options = whole_strata();
+    options.least_contrast = least_contrast;
+    const FieldCell cell = lesson.learned(options).q.cells[0];
+    EXPECT_GT(cell.mix, 0) << "it is trusted all the same";
+    return mix_of(cell);
   };
-  EXPECT_EQ(even(1), 1u);
-  EXPECT_EQ(even(4), 1u) << "mean square 1.4 times the square of the mean";
-  EXPECT_EQ(even(20), 0u) << "5 times";
+  EXPECT_EQ(mix(1, 2), 0);
+  EXPECT_EQ(mix(4, 2), 0) << "mean square 1.4 times the square of the mean";
+  EXPECT_GT(mix(20, 2), 0) << "5 times";
+  EXPECT_EQ(mix(20, 10), 0) << "5 times";
+  EXPECT_GT(mix(200, 10), 0) << "14 times";
 }
 
 // Brightest at stratum 5; as much evidence as a cell has after a few lessons.

@@ -45,7 +45,7 @@ inline void trace_subpath(const Scene& scene, const Accel& accel, const WalkOpti
 inline Fields train(const Scene& scene, const Accel& accel, int lessons = 5, int pairs = 2000, float mix = 0.8f) {
   Fields fields = start_fields(scene, 576);
   LearnOptions learning;
-  learning.trust = 4, learning.divide_cell = 300, learning.mix = mix;
+  learning.trust = 4, learning.divide_cell = 300, learning.mix = mix, learning.least_contrast = 1;
   for (int lesson = 0; lesson < lessons; ++lesson) {
     Training training = start_training(fields);
     Sightings sightings;

@@ -50,7 +50,7 @@ struct Trained {
   explicit Trained(const Stage& s) : scene(with_grey_lamp(s.make())), accel(scene) {
     RenderOptions o = statistical("guided-bdpt");
     o.spp = 7;  // all of them young: learning would go on
-    o.learn.trust = 8, o.learn.divide_cell = 400;
+    o.learn.trust = 8, o.learn.divide_cell = 400, o.learn.least_contrast = 1;
     o.learn.structure = s.structure;
     state = rendered(scene, accel, o);
   }

@@ -11,6 +11,7 @@ RenderOptions statistical(const std::string& integrator, int max_depth) {
   o.integrator = integrator;
   o.max_depth = max_depth;
   o.sampler = SamplerKind::independent;
+  o.learn.least_contrast = 2;
   return o;
 }
 

@@ -15,7 +15,8 @@ struct Plan {
   uint64_t seed = 1;     ///< of the first
 };
 
-/// Options of the statistical tests: independent numbers, so that the spread of renders is their variance.
+/// Options of the statistical tests: independent numbers, so that the spread of renders is their variance, and fields
+/// that guide wherever they may.
 RenderOptions statistical(const std::string& integrator, int max_depth = -1);
 /// Renders to the end; fails the test when a value was rejected.
 RenderState rendered(const Scene& scene, const Accel& accel, const RenderOptions& options);

@@ -28,6 +28,9 @@ struct FieldCell {
   float through = 0;            ///< share of the directions to be drawn through it, as far as it is trusted
 };
 
+/// g of (G4) for a diffuse surface, or a lamp; 0 where the strata are left out.
+inline float mix_of(const FieldCell& cell) { return cell.even ? 0 : cell.mix; }
+
 /// One learned field: strata of all cells. Hot: what sampling reads. mean and weight stand beside the nodes.
 struct Field {
   std::vector<FieldCell> cells;

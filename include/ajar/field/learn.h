@@ -18,6 +18,7 @@ struct LearnOptions {
   float divide_stratum = 0.03f;     ///< share of its cell's field above which a stratum is divided
   float trust = 32;                 ///< records after which half of the largest mix is given to the strata
   float mix = 0.8f;                 ///< largest g of (G4)
+  float least_contrast = 10;        ///< below, a cell's strata do not guide: left side of (G14)
   float forget = 0.5f;              ///< share of older evidence that is kept; 1: a stratum is the mean of its records
   bool steady = false;              ///< a cell's field stays as it is until what was learned contradicts it (T2)
   uint32_t train = 0;  ///< passes of training, even, after which fields are frozen; 0: they learn all along

@@ -19,9 +19,10 @@ struct Learning {
   uint32_t first = 0;   ///< number of the render's first pass; even; not 0 where it goes on from stored fields
 };
 
-/// After each of the first passes, young_generations of them, the fields are learned; from then on one path in
-/// rare_records is recorded, and passes between lessons double. What the first blind_generations saw, through fields
-/// that knew next to nothing, is dropped from the image.
+/// After each of the first passes, young_generations of them, the fields are learned; the next lesson is after
+/// rare_records passes, of which one path in so many is recorded, and from lesson to lesson both double: a lesson is
+/// always of as many paths. What the first blind_generations saw, through fields that knew next to nothing, is dropped
+/// from the image.
 inline constexpr uint32_t young_generations = 8, blind_generations = 4, rare_records = 8;
 
 Learning start_learning(const Scene& scene, const Film& film, const LearnOptions& options);

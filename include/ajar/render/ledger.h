@@ -26,6 +26,7 @@ struct Ledger {
                                                ///< both; joins: vertices merged. Ticks are those of s = 0, for all s
   uint64_t camera_ticks = 0, light_ticks = 0;  ///< of walking, the ray included
   uint64_t learn_ticks = 0;                    ///< of recording what was seen
+  double caustics = 0;  ///< energy of splats (t = 1) of light that came there by way of a delta event
 
   StrategyCost& at(int s, int t) { return strategies[s < most ? s : most][t < most ? t : most]; }
   StrategyCost& merge_at(int s, int t) { return merges[s < most ? s : most][t < most ? t : most]; }
