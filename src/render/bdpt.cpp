@@ -18,7 +18,6 @@ struct Work {
   Sample& sample;
   Scratch& scratch;
   double light_share = 1;  // of the light walk, for s = 2
-  bool by_delta = false;   // light subpath: one of its events so far was a delta
   float pixel = -1;        // radiance that the pixel is expected to have; 0: fields do not know; -1: not asked yet
 };
 
@@ -36,8 +35,7 @@ void add(Work& work, Candidate& c, int s, int t) {
   if (!accept(weighted, work.sample, work.scratch)) return;
   if (t == 1) {
     work.scratch.splats->push_back({c.raster, weighted * work.scratch.halves->splat_counts});
-    const double energy = gain_splat(work.job, work.scratch, s, work.scratch.splats->back());
-    if (work.by_delta) work.scratch.ledger->caustics += energy;
+    gain_splat(work.job, work.scratch);
   } else {
     work.sample.value += weighted;
     gain(work.scratch, s, t, weighted * work.sample.filter);
@@ -116,7 +114,6 @@ void trace_light_subpath(Work& work) {
   Surface surface;
   while (light.n < job.walk.max_edges) {
     if (light.n > 1 && !scatter(job.walk, sampler, light, walk)) return;
-    work.by_delta |= light.n > 1 && light[light.n - 1].delta;
     ++work.scratch.counters.light_rays;
     const bool hit = step(*job.scene, *job.accel, job.walk, light, walk, surface);
     charge(work.scratch, work.scratch.ledger->light_ticks);

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <bit>
+
 #include "ajar/core/bytes.h"
 #include "ajar/core/error.h"
 #include "ajar/render/render.h"
@@ -111,7 +113,7 @@ void load_checkpoint(const std::string& path, const std::string& key, RenderStat
   if (!state.pyramid.kept) state.pyramid = {};
   r.value(state.pixels_per_light), r.value(state.effort);
   r.require(state.effort >= RenderState::least_effort && state.effort <= 1);
-  r.require(state.pixels_per_light >= RenderState::most_light && state.pixels_per_light <= RenderState::least_light);
+  r.require(std::has_single_bit(state.pixels_per_light) && state.pixels_per_light <= RenderState::least_light);
   state.plain.guided = state.film;  // for its place and filter, which are not in the file
   plain_fields(r, state.plain);
   r.require(state.plain.seen.half.size() == state.plain.seen.sum.size());

@@ -180,14 +180,24 @@ inline double gain(StrategyCost& cost, const Rgb& pixel) {
 }
 inline void gain(Scratch& scratch, int s, int t, const Rgb& pixel) { gain(scratch.ledger->at(s, t), pixel); }
 
-/// The same of a light path's splat, whose filter's integral is 1. What filters carry over the border of the film, one
-/// way and the other, is taken for equal.
-inline double gain_splat(const Job& job, Scratch& scratch, int s, const Splat& splat) {
+/// Whether light came to the subpath's last vertex by way of a delta event.
+inline bool is_caustic(const Subpath& light) {
+  for (int i = 1; i + 1 < light.n; ++i)
+    if (light[i].delta) return true;
+  return false;
+}
+
+/// The same of the last splat, that of the light subpath's last vertex; its filter's integral is 1. What filters carry
+/// over the border of the film, one way and the other, is taken for equal.
+inline void gain_splat(const Job& job, Scratch& scratch) {
+  const Splat& splat = scratch.splats->back();
   const Camera& c = job.scene->camera;
   const Vec2 at = splat.raster - Vec2(c.crop_x, c.crop_y);
   const bool inside = at.x >= 0 && at.y >= 0 && at.x < float(c.crop_width) && at.y < float(c.crop_height);
   const double pixels = double(c.crop_width) * c.crop_height;
-  return gain(scratch.ledger->at(s, 1), inside ? splat.value * float(1 / pixels) : Rgb(0));
+  const Rgb pixel = inside ? splat.value * float(1 / pixels) : Rgb(0);
+  const double energy = gain(scratch.ledger->at(scratch.light.n, 1), pixel);
+  if (is_caustic(scratch.light)) scratch.ledger->caustics += energy;
 }
 
 /// Law 6: only finite, non-negative values may go on; others are counted.

@@ -20,7 +20,7 @@ void trace_light(const Job& job, Sample& sample, Scratch& scratch) {
       ++scratch.ledger->at(light.n, 1).rays;
       if (visible(*job.accel, c.segment) && accept(c.value, sample, scratch)) {
         scratch.splats->push_back({c.raster, c.value});
-        gain_splat(job, scratch, light.n, scratch.splats->back());
+        gain_splat(job, scratch);
       }
     }
     if (joins) charge_join(scratch, light.n, 1);

@@ -107,7 +107,8 @@ constexpr double noisy = 0.25, quiet = 0.15, shining = 0.01;
 uint32_t pixels_per_light(const Film& film, const Ledger& ledger) {
   if (ledger.caustics > shining * total_energy(ledger)) return RenderState::most_light;  // (J5)
   const double error = estimate_sample_error(film);
-  return error < quiet ? RenderState::least_light : error < noisy ? 4 : 2;
+  if (error < quiet) return RenderState::least_light;
+  return error < noisy ? RenderState::usual_light : RenderState::noisy_light;
 }
 
 // What joins of a guided vertex count for in the weights: about as many are made of each, where it matters (J3).

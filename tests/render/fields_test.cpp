@@ -239,6 +239,25 @@ TEST_P(LearnedFields, GuidedEmissionSamplesItsDensity) {
   EXPECT_GT(moved, chi_options.samples / 10) << "hardly guided: the test means little";
 }
 
+TEST(LearnedFieldsOf, EvenLampsAreLeftAlone) {
+  const Trained t(stages[0]);
+  Fields even = t.fields();
+  for (FieldCell& cell : even.w.cells) cell.even = 1;
+  Sampler sampler = make_sampler(SamplerKind::independent, 3, Side::light, 0, 0);
+  int guided = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Vec2 u = sampler.next2(), v = sampler.next2();
+    EmissionSample e;
+    ASSERT_TRUE(sample_emission(t.scene, &t.fields(), 0.5f, u, v, e));
+    guided += e.pdf_direction != pdf_emission(t.scene, e.point, e.direction).direction;
+    ASSERT_TRUE(sample_emission(t.scene, &even, 0.5f, u, v, e));
+    const double bare = pdf_emission(t.scene, e.point, e.direction).direction;
+    EXPECT_NEAR(e.pdf_direction, bare, 1e-5 * bare);
+    EXPECT_EQ(pdf_emission(t.scene, &even, e.point, e.direction).direction, bare);
+  }
+  EXPECT_GT(guided, 900) << "the others would be";
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, LearnedFields, testing::ValuesIn(stages),
                          [](const auto& test) { return std::string(test.param.name); });
 

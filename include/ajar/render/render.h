@@ -29,8 +29,8 @@ struct RenderState {
   Learning learning;  ///< of guided integrators
   /// One light subpath for so many, where camera subpaths join vertices of a whole tile. Looked at anew after 8, 16, 32
   /// ... passes.
-  uint32_t pixels_per_light = 2;
-  static constexpr uint32_t most_light = 1, least_light = 8;
+  uint32_t pixels_per_light = noisy_light;
+  static constexpr uint32_t most_light = 1, noisy_light = 2, usual_light = 4, least_light = 8;
   /// Spent on joins, of what may be: by the share of the light that they bring (J8). Looked at anew after 1, 2, 4 ...
   /// passes.
   float effort = 0.5f;
