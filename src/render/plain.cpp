@@ -19,8 +19,8 @@ constexpr double exposed = 0.2;                       // mean luminance of the i
 constexpr double dark = 0.01;                         // of relMSE
 constexpr double least_miss = 0.1;                    // of a square's light
 constexpr double fastest = 16;                        // of path tracing: passes for one of the guided integrator
-// Of the guided integrator's error after equal time: path tracing takes over; less while fields are young.
-constexpr double far_better = 0.75, better = 0.85;
+// Of the guided integrator's error after equal time: path tracing takes over; before, while fields are young.
+constexpr double far_better = 0.8, better = 1;
 // It is not looked at again: after so many passes, before, or at once.
 constexpr double worse = 1.4, much_worse = 2, hopeless = 8;
 constexpr uint32_t settling = 16;
@@ -38,11 +38,8 @@ constexpr double rarest = 32;
 
 // CPU time of a ray with all that hangs on it [us], about: benchmarks/ray_cost.sh (docs/results/plan.md). Costs are
 // reckoned from it, so that what is decided does not depend on the clock.
-constexpr double path_ray = 0.23;
-double ray_cost(const std::string& integrator) {
-  if (integrator == "guided-path") return 0.42;
-  return is_merging(integrator) ? 0.75 : 0.54;
-}
+constexpr double path_ray = 0.25;
+double ray_cost(const std::string& integrator) { return is_merging(integrator) ? 0.46 : 0.39; }
 
 uint64_t ray_count(const Counters& n) { return n.camera_rays + n.light_rays + n.shadow_rays; }
 
@@ -151,7 +148,7 @@ void decide(double error, double deviation, double guided, double samples, uint3
   plain.passes = passes, plain.pace = samples / passes;
   plain.guided_error = guided * passes, plain.plain_error = error * samples;
   plain.ratio = guided > 0 ? most / guided : 0;
-  plain.taken = plain.ratio > 0 && plain.ratio < (first ? far_better : better) && most * samples < tame;
+  plain.taken = plain.ratio > 0 && plain.ratio < (passes < settling ? far_better : better) && most * samples < tame;
   plain.settled = plain.taken || passes == last_look || least > too_much * guided || least * samples > wild;
 }
 
