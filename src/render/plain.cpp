@@ -20,7 +20,7 @@ constexpr double dark = 0.01;                         // of relMSE
 constexpr double least_miss = 0.1;                    // of a square's light
 constexpr double fastest = 16;                        // of path tracing: passes for one of the guided integrator
 // Of the guided integrator's error after equal time: path tracing takes over; before, while fields are young.
-constexpr double far_better = 0.8, better = 1;
+constexpr double far_better = 0.85, better = 1;
 // It is not looked at again: after so many passes, before, or at once.
 constexpr double worse = 1.4, much_worse = 2, hopeless = 8;
 constexpr uint32_t settling = 16;
@@ -36,10 +36,10 @@ constexpr uint32_t doubted = 64;
 // Passes, at most, by which what it missed then counts: where the guided image is too bright by chance, it stays so.
 constexpr double rarest = 32;
 
-// CPU time of a ray with all that hangs on it [us], about: benchmarks/ray_cost.sh (docs/results/plan.md). Costs are
-// reckoned from it, so that what is decided does not depend on the clock.
+// CPU time of a ray with all that hangs on it [us], about: benchmarks/ray_cost.sh; that of photon maps of images larger
+// than those (docs/results/plan.md). Costs are reckoned from it, so that what is decided does not depend on the clock.
 constexpr double path_ray = 0.25;
-double ray_cost(const std::string& integrator) { return is_merging(integrator) ? 0.46 : 0.39; }
+double ray_cost(const std::string& integrator) { return is_merging(integrator) ? 0.75 : 0.39; }
 
 uint64_t ray_count(const Counters& n) { return n.camera_rays + n.light_rays + n.shadow_rays; }
 
