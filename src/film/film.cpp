@@ -205,13 +205,30 @@ ErrorEstimate estimate_error(const Film& film) {
   return film.passes < 2 ? ErrorEstimate{} : estimate(film, means(film), 0.01);
 }
 
+namespace {
+// What is added to squares of radiance: 0.01 of an image exposed to a mean luminance of a fifth.
+double exposed_epsilon(const std::vector<glm::dvec3>& mean) {
+  double light = 0;
+  for (const glm::dvec3& m : mean) light += luminance(Rgb(m));
+  const double exposed = light / double(mean.size()) / 0.2;
+  return 0.01 * exposed * exposed;
+}
+}  // namespace
+
 double estimate_sample_error(const Film& film) {
   if (film.passes < 2) return infinity;
   const std::vector<glm::dvec3> mean = means(film);
-  double light = 0;
-  for (const glm::dvec3& m : mean) light += luminance(Rgb(m));
-  const double exposed = light / double(film.pixels()) / 0.2;
-  return estimate(film, mean, 0.01 * exposed * exposed).relmse_trimmed * film.passes;
+  return estimate(film, mean, exposed_epsilon(mean)).relmse_trimmed * film.passes;
+}
+
+double relative_variance(const Film& film, std::vector<double> variances) {
+  const std::vector<glm::dvec3> mean = means(film);
+  const double epsilon = exposed_epsilon(mean);
+  if (!(epsilon > 0)) return 0;
+  for (size_t i = 0; i < mean.size(); ++i) variances[i] /= sqr(double(luminance(Rgb(mean[i])))) + epsilon;
+  const auto kept = variances.end() - std::ptrdiff_t(variances.size() / 1000);
+  if (kept != variances.end()) std::nth_element(variances.begin(), kept, variances.end());
+  return std::accumulate(variances.begin(), kept, 0.0) / double(kept - variances.begin());
 }
 
 }  // namespace ajar

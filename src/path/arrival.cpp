@@ -31,8 +31,10 @@ bool is_worth_it(const WalkOptions& options, Sampler& sampler, Subpath& camera, 
   Vertex& v = camera[camera.n - 1];
   const float all = promise(v.guide, v.beta).all;
   if (!(walk.promise > 0) || !(all > 0)) return true;
-  const float goes_on = std::clamp(window * share_of_last(options, camera) * all / walk.promise, least, 1.0f);  // (G15)
+  const float goes_on =
+      std::clamp(window * options.goes_on * share_of_last(options, camera) * all / walk.promise, least, 1.0f);  // (G15)
   if (!(sampler.at(number).x < goes_on)) return false;
+  walk.sure = walk.sure && goes_on == 1;
   v.beta /= goes_on, walk.survival /= goes_on;
   return true;
 }

@@ -30,6 +30,7 @@ Counters& Counters::operator+=(const Counters& o) {
   camera_rays += o.camera_rays, light_rays += o.light_rays, shadow_rays += o.shadow_rays;
   camera_paths += o.camera_paths, light_paths += o.light_paths;
   zero_paths += o.zero_paths;
+  joins += o.joins, beyond += o.beyond;
   return *this;
 }
 
@@ -131,6 +132,7 @@ bool scatter(const WalkOptions& options, Sampler& sampler, Subpath& subpath, Wal
   walk.beta = v.beta;
   if (!choose_direction(v.guide, mode, options, subpath.n, sampler, walk.beta, walk.survival, walk.promise, s))
     return false;
+  walk.sure = walk.sure && s.goes_on == 1;
   v.delta = s.delta;
   walk.o = offset(v.p, v.ng, v.error, s.wi);
   walk.d = s.wi;

@@ -234,6 +234,32 @@ void join_stored(Work& work, float worth) {
   }
 }
 
+// What the sample has brought its pixel so far.
+float brought(const Work& work) { return luminance(work.sample.value) * work.sample.filter; }
+
+// Rays of camera subpaths and joins, so far.
+uint64_t work_of(const Counters& n) { return n.camera_rays + n.joins; }
+
+// What a sample had brought and cost when its first vertex was joined.
+struct First {
+  bool known = false;
+  float brought = 0;
+  uint64_t work = 0;
+};
+
+void note_first(const Work& work, First& first) {
+  if (!work.job.beyond || first.known || work.pixel < 0) return;
+  first = {true, brought(work), work_of(work.scratch.counters)};
+}
+
+void note_beyond(const Work& work, const First& first, const Walk& walk) {
+  if (!first.known || walk.sure) return;
+  const float more = brought(work) - first.brought;
+  Beyond& found = work.job.beyond[work.sample.path];
+  found.sum += more, found.square += sqr(more);
+  work.scratch.counters.beyond += work_of(work.scratch.counters) - first.work;
+}
+
 // What teaches goes on, and takes its numbers.
 bool goes_on(const Job& job, Sample& sample, Subpath& camera, Walk& walk) {
   if (!sample.teaches) return is_worth_it(job.walk, sample.sampler, camera, walk);
@@ -304,6 +330,7 @@ void trace_bdpt(const Job& job, Sample& sample, Scratch& scratch) {
   Walk walk;
   start_camera(*job.scene, job.walk, sample.raster, sample.lens, camera, walk);
   Surface surface;
+  First first;
   do {
     ++scratch.counters.camera_rays;
     const bool hit = step(*job.scene, *job.accel, job.walk, camera, walk, surface);
@@ -315,8 +342,10 @@ void trace_bdpt(const Job& job, Sample& sample, Scratch& scratch) {
     join_surface(work, surface);
     if (scratch.pool && !goes_on(job, sample, camera, walk)) break;
     join_all(work);
+    note_first(work, first);
   } while (camera.n <= job.walk.max_edges && scatter(job.walk, sample.sampler, camera, walk));
   charge(scratch, scratch.ledger->camera_ticks);
+  note_beyond(work, first, walk);
   if (!sample.teaches || !job.guided) return;
   teach_camera(work);
   charge(scratch, scratch.ledger->learn_ticks);

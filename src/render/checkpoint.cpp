@@ -9,7 +9,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind checkpoint_kind = {"AJARck17", "checkpoint", "render once with --checkpoint",
+constexpr FileKind checkpoint_kind = {"AJARck18", "checkpoint", "render once with --checkpoint",
                                       "start again without --resume"};
 
 // One list of fields for both ways.
@@ -60,6 +60,11 @@ void plain_fields(Io& io, State& plain) {
   film_fields(io, plain.guided), io.value(plain.ledger);
 }
 
+template <class Io, class State>
+void balance_fields(Io& io, State& balance) {
+  io.value(balance.goes_on), io.value(balance.work), io.array(balance.found);
+}
+
 void read(Reader& r, Pyramid& pyramid) {
   for (size_t n = r.count(2 * sizeof(int)); n > 0; --n) {
     std::pair<int, int> st;
@@ -88,6 +93,7 @@ void save_checkpoint(const std::string& path, const std::string& key, const Rend
     for (const auto& [st, layer] : state.pyramid.layers)
       w.value(st.first), w.value(st.second), w.array(layer.raw), w.array(layer.weighted);
     w.value(state.pixels_per_light), w.value(state.effort);
+    balance_fields(w, state.balance);
     plain_fields(w, state.plain);
     write(w, state.learning);
   });
@@ -114,6 +120,9 @@ void load_checkpoint(const std::string& path, const std::string& key, RenderStat
   r.value(state.pixels_per_light), r.value(state.effort);
   r.require(state.effort >= RenderState::least_effort && state.effort <= 1);
   r.require(std::has_single_bit(state.pixels_per_light) && state.pixels_per_light <= RenderState::least_light);
+  balance_fields(r, state.balance);
+  r.require(state.balance.goes_on >= Balance::least && state.balance.goes_on <= Balance::most);
+  r.require(state.balance.found.empty() || state.balance.found.size() == pixels);
   state.plain.guided = state.film;  // for its place and filter, which are not in the file
   plain_fields(r, state.plain);
   r.require(state.plain.seen.half.size() == state.plain.seen.sum.size());

@@ -8,6 +8,7 @@
 #include "ajar/join/store.h"
 #include "ajar/join/visibility.h"
 #include "ajar/path/record.h"
+#include "ajar/render/balance.h"
 #include "ajar/render/learning.h"
 #include "ajar/render/ledger.h"
 #include "ajar/render/options.h"
@@ -50,6 +51,7 @@ struct Job {
                                        ///< one in inner_photons; null: none
   double kept = 0;                     ///< light vertices of a chunk that go into its pool, about
   float effort = 1;                    ///< how much is spent on joins (J8)
+  Beyond* beyond = nullptr;            ///< per pixel, see Balance; null: not looked at
   bool merges_alone = false;           ///< nothing but merges brings light, so they need no weights
   int final_gather = 0;                ///< of photon, see RenderOptions
   const Vpls* vpls = nullptr;
@@ -167,6 +169,7 @@ inline void charge(Scratch& scratch, uint64_t& part) {
 inline void charge_join(Scratch& scratch, int s, int t) {
   StrategyCost& cost = scratch.ledger->at(s, t);
   ++cost.joins;
+  scratch.counters.joins += t > 1;
   charge(scratch, cost.ticks);
 }
 

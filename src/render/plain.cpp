@@ -215,6 +215,7 @@ double missed_by_plain(const PlainLook& look, bool merges) {
 
 Job plainly(Job job) {
   job.trace = trace_path, job.light_half = nullptr;
+  job.beyond = nullptr;
   job.guided = false, job.learning = nullptr, job.training = nullptr;
   job.walk.fields = nullptr, job.walk.merging = {}, job.walk.inner_share = job.walk.seen_share = 0;
   return job;

@@ -129,6 +129,18 @@ float effort_for(const Ledger& ledger) {
                                    : 0;  // (J8)
 }
 
+// How many camera subpaths go on. While fields know too little for the image, as many as they say.
+void balance_pass(bool plain, RenderState& state, Job& job) {
+  const Film& film = state.film;
+  Balance& balance = state.balance;
+  const bool told =
+      job.guided && job.trace == trace_bdpt && !plain && state.learning.fields.generation >= blind_generations;
+  if (told && film.chunks == 0 && film.passes >= 8 && std::has_single_bit(film.passes)) rebalance(film, balance);
+  if (told && balance.found.empty()) balance.found.resize(film.pixels());
+  job.walk.goes_on = balance.goes_on;
+  job.beyond = told ? balance.found.data() : nullptr;
+}
+
 // How many light subpaths are traced in the pass at hand, and how much their joins may cost. Where camera vertices
 // choose among those of many tiles, a few are as good as many. While fields know little, all of them teach; a photon
 // map has use for all.
@@ -339,7 +351,10 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
     job.walk.merging =
         merging && !plain ? merging_of(scene, options, film, equal_chunks(all, batch_chunks)) : Merging{};
     job.walk.merging.paths /= share_of(job, film);
-    threads.run([&] { plan_pass(joined, plain, state, job); });
+    threads.run([&] {
+      plan_pass(joined, plain, state, job);
+      balance_pass(plain, state, job);
+    });
     const bool joins_vpls = integrator.vpls && !in_training(state.learning);
     const bool in_halves = integrator.light_half && !plain && !joins_vpls;
     const uint32_t most_at_once =
@@ -366,6 +381,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
     for (Scratch& s : scratches) {
       gather(state.learning.sightings, s.sightings);
       stats.counters += s.counters;
+      if (job.beyond) state.balance.work += s.counters;
       stats.rejected += s.rejected;
       s.counters = {};
       s.rejected = 0;

@@ -51,18 +51,24 @@ TEST(Roulette, WhatLosesNothingEndsAllTheSame) {
   EXPECT_LT(after(1000, 1).chance, 0.011);
 }
 
-// Fields that expect a millionth of what was promised, wherever the path comes: it lives on with few others, but does
-// not weigh more than the window allows.
-TEST(Roulette, FieldsThatLieDoNotMakeFireflies) {
+// A vertex of a wall whose cell's fields expect so much.
+Guide guide_by(Fields& fields, float total) {
   const Scene scene = cornell(8);
   const Accel accel(scene);
   Hit hit;
-  ASSERT_TRUE(accel.intersect({0, 0, 3}, {0, 0, -1}, 0, infinity, hit));
-  Fields fields;
-  fields.q.cells.push_back({0, 0, 1e-6f, 0.8f, 1});
+  EXPECT_TRUE(accel.intersect({0, 0, 3}, {0, 0, -1}, 0, infinity, hit));
+  for (Field* f : {&fields.q, &fields.w}) f->cells.push_back({0, 0, total, 0.8f, 1});
   Guide guide;
   make_guide(scene, nullptr, Side::camera, make_surface(scene, hit, {0, 0, 3}, {0, 0, -1}), {0, 0, 1}, guide);
   guide.fields = &fields, guide.cell = 0;
+  return guide;
+}
+
+// Fields that expect a millionth of what was promised, wherever the path comes: it lives on with few others, but does
+// not weigh more than the window allows.
+TEST(Roulette, FieldsThatLieDoNotMakeFireflies) {
+  Fields fields;
+  const Guide guide = guide_by(fields, 1e-6f);
   WalkOptions options;
   options.fields = &fields;
   float weight = 1, chance = 1, promised = 1;
@@ -73,6 +79,21 @@ TEST(Roulette, FieldsThatLieDoNotMakeFireflies) {
   }
   EXPECT_NEAR(weight * chance, 1, 1e-5);
   EXPECT_LT(chance, 0.21);
+}
+
+// Of camera subpaths alone: light subpaths keep theirs.
+TEST(Roulette, MoreGoOnWhereThatPays) {
+  Fields fields;
+  Guide guide = guide_by(fields, 1);
+  WalkOptions options;
+  options.fields = &fields;
+  float promised = 16 * promise(guide, Rgb(1)).beyond;
+  const float q = keep(options, guide, 2, Rgb(1), Rgb(1), promised);
+  EXPECT_NEAR(q, options.window / 16, 1e-5);
+  options.goes_on = 2;
+  EXPECT_NEAR(keep(options, guide, 2, Rgb(1), Rgb(1), promised), 2 * q, 1e-5);
+  guide.side = Side::light;
+  EXPECT_NEAR(keep(options, guide, 2, Rgb(1), Rgb(1), promised), q, 1e-5);
 }
 
 }  // namespace

@@ -111,6 +111,9 @@ inline void expect_same_bytes(const RenderState& a, const RenderState& b) {
       EXPECT_EQ(a.stats.ledger.merges[s][t].energy, b.stats.ledger.merges[s][t].energy);
     }
   EXPECT_EQ(a.film.dropped, b.film.dropped);
+  EXPECT_EQ(a.balance.goes_on, b.balance.goes_on);
+  EXPECT_EQ(a.balance.work.beyond, b.balance.work.beyond);
+  EXPECT_TRUE(same_bytes(a.balance.found, b.balance.found));
   expect_same_learning(a.learning, b.learning);
 }
 

@@ -16,6 +16,9 @@ struct Counters {
   uint64_t camera_rays = 0, light_rays = 0, shadow_rays = 0;
   uint64_t camera_paths = 0, light_paths = 0;
   uint64_t zero_paths = 0;  ///< samples that brought nothing: black, and no splat
+  uint64_t joins = 0;       ///< tried at camera vertices, next-event estimations too
+  uint64_t beyond = 0;      ///< rays of camera subpaths and joins behind the first vertex that is joined, where
+                            ///< roulette might have ended the subpath
 
   Counters& operator+=(const Counters& o);
 };
@@ -47,6 +50,7 @@ struct WalkOptions {
   int roulette_from = 5;    ///< edges that are traced without roulette
   Heuristic heuristic = Heuristic::power;
   float window = 5;                ///< guided subpaths that promise less than 1 / window of their start face roulette
+  float goes_on = 1;               ///< so many times more camera subpaths go on than that (G16)
   int sure_vertices = 64;          ///< beyond, no subpath is sure to go on
   const Fields* fields = nullptr;  ///< guide the subpaths; null: unguided
   double inner_share = 1;          ///< Shares::inner of all joins (join/mis.h)
@@ -69,6 +73,7 @@ struct Walk {
   double first_share = 1;   ///< v_1 of (R2), not raised
   EmissionSample start;     ///< of a light subpath
   Rgb survival{1};          ///< throughput since the start, for roulette
+  bool sure = true;         ///< roulette could not have ended it so far
   bool straight = true;     ///< all events so far were delta
   float promise = 0;        ///< what the fields expected the subpath to bring when it began; 0: they do not know
 };
@@ -101,7 +106,10 @@ inline float keep(const WalkOptions& options, const Guide& guide, int vertices, 
     if (!(promised > 0)) promised = p.all;
     const float most = vertices > options.sure_vertices ? surest(vertices) : 1;
     const float least = std::clamp(max_component(survival) / options.window, 0.05f, most);
-    if (p.beyond > 0 && promised > 0) return std::clamp(options.window * p.beyond / promised, least, most);  // (G6)
+    if (p.beyond > 0 && promised > 0) {
+      const float window = guide.side == Side::camera ? options.window * options.goes_on : options.window;
+      return std::clamp(window * p.beyond / promised, least, most);  // (G6)
+    }
   }
   return vertices > options.roulette_from ? std::min(max_component(survival), surest(vertices)) : 1;
 }
@@ -116,11 +124,11 @@ inline bool choose_direction(const Guide& guide, Mode mode, const WalkOptions& o
   if (!sample(guide, u_lobe, sampler.next2(), mode, out) || is_black(out.weight)) return false;
   beta *= out.weight;
   survival *= out.weight * (mode == Mode::radiance ? sqr(out.eta) : 1.0f);
-  const float goes_on = keep(options, guide, vertices, arrived, survival, promised);
-  if (goes_on == 1) return true;
-  if (!(sampler.at(lobe_and_roulette).y < goes_on)) return false;
-  beta /= goes_on;
-  survival /= goes_on;
+  out.goes_on = keep(options, guide, vertices, arrived, survival, promised);
+  if (out.goes_on == 1) return true;
+  if (!(sampler.at(lobe_and_roulette).y < out.goes_on)) return false;
+  beta /= out.goes_on;
+  survival /= out.goes_on;
   return true;
 }
 

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "ajar/film/pyramid.h"
+#include "ajar/render/balance.h"
 #include "ajar/render/learning.h"
 #include "ajar/render/ledger.h"
 #include "ajar/render/options.h"
@@ -35,6 +36,7 @@ struct RenderState {
   /// passes.
   float effort = 0.5f;
   static constexpr float least_effort = 1.0f / 16;
+  Balance balance;  ///< of guided integrators
   Plain plain;  ///< when RenderOptions::leaves_out
 };
 

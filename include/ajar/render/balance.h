@@ -1,0 +1,29 @@
+// Enters: what camera subpaths bring behind their first vertex, after roulette, how much that varies, and what it
+// costs. Leaves: how many of them are to go on.
+#pragma once
+
+#include <vector>
+
+#include "ajar/film/film.h"
+#include "ajar/path/walk.h"
+
+namespace ajar {
+
+/// Sums over the samples of a pixel: luminance found behind the first vertex that is joined, by subpaths that roulette
+/// might have ended.
+struct Beyond {
+  float sum = 0, square = 0;
+};
+
+/// What roulette spares makes as large a share of the variance as of the work, or else more, or fewer, are to go on.
+/// (G16)
+struct Balance {
+  static constexpr float least = 1, most = 16;
+  float goes_on = least;      ///< times what (G6) and (G15) ask for
+  Counters work;              ///< of the passes since it was looked at
+  std::vector<Beyond> found;  ///< per pixel, of the same; empty until there are any
+};
+/// Looks at it anew, and clears the sums. Does nothing where there are none.
+void rebalance(const Film& film, Balance& balance);
+
+}  // namespace ajar

@@ -1,0 +1,35 @@
+#include "ajar/render/balance.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace ajar {
+namespace {
+
+constexpr float least_step = 0.5f, most_step = 2;  // from look to look
+
+// Of so many samples, per pixel.
+std::vector<double> variances_of(const std::vector<Beyond>& found, double samples) {
+  std::vector<double> out;
+  for (const Beyond& b : found)
+    out.push_back((double(b.square) - double(b.sum) * double(b.sum) / samples) / (samples - 1));
+  return out;
+}
+
+}  // namespace
+
+void rebalance(const Film& film, Balance& balance) {
+  const Counters& work = balance.work;
+  const double error = estimate_sample_error(film), samples = double(work.camera_paths) / double(film.pixels());
+  if (balance.found.empty() || !(samples >= 2) || !(error > 0) || !(error < infinity)) return;
+  if (work.beyond > 0) {
+    const double of_variance = relative_variance(film, variances_of(balance.found, samples)) / error;
+    const double of_work = double(work.beyond) / double(work.camera_rays + work.light_rays + work.joins);
+    const float step = std::clamp(float(std::sqrt(of_variance / of_work)), least_step, most_step);  // (G16)
+    balance.goes_on = std::clamp(balance.goes_on * step, Balance::least, Balance::most);
+  }
+  balance.work = {};
+  balance.found.assign(balance.found.size(), {});
+}
+
+}  // namespace ajar
