@@ -80,7 +80,7 @@ TEST_F(Render, AccountIsRecorded) {
   while (std::getline(lines, line)) last = line;
   const auto logged = nlohmann::json::parse(last);
   for (const char* key :
-       {"mean_path_edges", "light_subpaths_per_sample", "zero_contribution_paths", "tracing", "strategies"})
+       {"mean_path_edges", "light_subpaths_per_sample", "goes_on", "zero_contribution_paths", "tracing", "strategies"})
     EXPECT_EQ(json[key], logged[key]) << key;
   EXPECT_FALSE(json.contains("fields"));
   EXPECT_GT(json["mean_path_edges"]["camera"], 1);

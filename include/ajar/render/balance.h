@@ -1,5 +1,5 @@
-// Enters: what camera subpaths bring behind their first vertex, after roulette, how much that varies, and what it
-// costs. Leaves: how many of them are to go on.
+// Enters: what camera subpaths bring behind their first vertex, how much that varies, and what it costs.
+// Leaves: how many of them are to go on.
 #pragma once
 
 #include <vector>
