@@ -1,6 +1,7 @@
-// How much of a render is ray tracing: renders passes on one thread, records every ray on the way to Embree, then sends the same rays
-// through a bare loop of rtcIntersect1 / rtcOccluded1. Prints rays/s of both and their ratio, in turn, several times; beside it the
-// ratio that a renderer would reach which does nothing but find each hit's surface and draw one pair of numbers for each ray.
+// How much of a render is ray tracing: renders passes on one thread, records every ray on the way to Embree, then sends
+// the same rays through a bare loop of rtcIntersect1 / rtcOccluded1. Prints rays/s of both and their ratio, in turn,
+// several times; beside it the ratio that a renderer would reach which does nothing but find each hit's surface and
+// draw one pair of numbers for each ray.
 //
 //   bench_rays SCENE.xml INTEGRATOR [WIDTH HEIGHT [PASSES [ROUNDS [MAX_DEPTH]]]]
 
@@ -110,7 +111,8 @@ int main(int argc, char** argv) try {
   recording = true;
   render_once(scene, accel, options);
   recording = false;
-  fmt::print("{} {} {}x{}, {} passes: {:.2f} rays per sample\n", argv[1], argv[2], width, height, options.spp, double(rays.size()) / samples);
+  fmt::print("{} {} {}x{}, {} passes: {:.2f} rays per sample\n", argv[1], argv[2], width, height, options.spp,
+             double(rays.size()) / samples);
   for (int round = 0; round < argument(argc, argv, 6, 5); ++round) {
     uint64_t hits = 0;
     float sum = 0;
@@ -119,8 +121,11 @@ int main(int argc, char** argv) try {
     whole = render_once(scene, accel, options);
     if (round % 2 == 1) bare = bare_loop(hits);
     const double least = least_loop(scene, accel, sum);
-    fmt::print("bare {:.3f} Mrays/s  render {:.3f} Mrays/s  ratio {:.3f}  at most {:.3f}  {:.3f} us CPU per sample  ({} hits, {:.0f})\n",
-               rays.size() / bare * 1e-6, rays.size() / whole * 1e-6, bare / whole, bare / least, whole / samples * 1e6, hits, sum);
+    fmt::print(
+        "bare {:.3f} Mrays/s  render {:.3f} Mrays/s  ratio {:.3f}  at most {:.3f}  {:.3f} us CPU per sample  ({} hits, "
+        "{:.0f})\n",
+        rays.size() / bare * 1e-6, rays.size() / whole * 1e-6, bare / whole, bare / least, whole / samples * 1e6, hits,
+        sum);
   }
   return 0;
 } catch (const ajar::Error& e) {

@@ -135,7 +135,7 @@ void balance_pass(bool plain, RenderState& state, Job& job) {
   Balance& balance = state.balance;
   const bool told =
       job.guided && job.trace == trace_bdpt && !plain && state.learning.fields.generation >= blind_generations;
-  if (told && film.chunks == 0 && film.passes >= 8 && std::has_single_bit(film.passes)) rebalance(film, balance);
+  if (told && film.chunks == 0 && film.passes >= 4 && std::has_single_bit(film.passes)) rebalance(film, balance);
   if (told && balance.found.empty()) balance.found.resize(film.pixels());
   job.walk.goes_on = balance.goes_on;
   job.beyond = told ? balance.found.data() : nullptr;

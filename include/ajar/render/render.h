@@ -37,7 +37,7 @@ struct RenderState {
   float effort = 0.5f;
   static constexpr float least_effort = 1.0f / 16;
   Balance balance;  ///< of guided integrators
-  Plain plain;  ///< when RenderOptions::leaves_out
+  Plain plain;      ///< when RenderOptions::leaves_out
 };
 
 /// Seen between batches of chunks, a few times a second at most for large images; return false to stop. May be empty.
