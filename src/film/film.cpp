@@ -221,14 +221,19 @@ double estimate_sample_error(const Film& film) {
   return estimate(film, mean, exposed_epsilon(mean)).relmse_trimmed * film.passes;
 }
 
+void trim(std::vector<double>& errors) {
+  const auto kept = errors.end() - std::ptrdiff_t(errors.size() / 1000);
+  if (kept != errors.end()) std::nth_element(errors.begin(), kept, errors.end());
+  errors.erase(kept, errors.end());
+}
+
 double relative_variance(const Film& film, std::vector<double> variances) {
   const std::vector<glm::dvec3> mean = means(film);
   const double epsilon = exposed_epsilon(mean);
   if (!(epsilon > 0)) return 0;
   for (size_t i = 0; i < mean.size(); ++i) variances[i] /= sqr(double(luminance(Rgb(mean[i])))) + epsilon;
-  const auto kept = variances.end() - std::ptrdiff_t(variances.size() / 1000);
-  if (kept != variances.end()) std::nth_element(variances.begin(), kept, variances.end());
-  return std::accumulate(variances.begin(), kept, 0.0) / double(kept - variances.begin());
+  trim(variances);
+  return std::accumulate(variances.begin(), variances.end(), 0.0) / double(variances.size());
 }
 
 }  // namespace ajar

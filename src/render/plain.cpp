@@ -123,12 +123,6 @@ Square square_of(const PassHalves& h, size_t first) {
   return s;
 }
 
-void trim(std::vector<double>& errors) {
-  const auto kept = errors.end() - std::ptrdiff_t(errors.size() / 1000);
-  if (kept != errors.end()) std::nth_element(errors.begin(), kept, errors.end());
-  errors.erase(kept, errors.end());
-}
-
 struct Mean {
   double value = 0, deviation = 0;  // standard deviation of the mean
 };

@@ -30,7 +30,9 @@ TEST(Arrival, KeepsTheMeanAndEndsWhatJoinsBeforeBring) {
   WalkOptions options;
   options.fields = &state.learning.fields;
   options.inner_share = 2, options.seen_share = 1000, options.light_paths = 500;
-  int ended[9] = {}, tried[9] = {};
+  WalkOptions easier = options;
+  easier.goes_on = Balance::most;
+  int ended[9] = {}, tried[9] = {}, saved = 0;
   double before = 0, after = 0, square = 0;
   at_arrivals(scene, accel, options, 4000, [&](const Subpath& camera, const Walk& walk) {
     Subpath copy = camera;
@@ -39,6 +41,16 @@ TEST(Arrival, KeepsTheMeanAndEndsWhatJoinsBeforeBring) {
         make_sampler(SamplerKind::independent, 8, Side::camera, uint64_t(tried[camera.n]), uint32_t(camera.n));
     const float was = luminance(camera[camera.n - 1].beta);
     const bool on = is_worth_it(options, sampler, copy, gone_on);
+    if (on) {
+      EXPECT_EQ(gone_on.sure, walk.sure && luminance(copy[copy.n - 1].beta) == was);
+    }
+    Subpath other = camera;
+    Walk other_walk = walk;
+    Sampler same =
+        make_sampler(SamplerKind::independent, 8, Side::camera, uint64_t(tried[camera.n]), uint32_t(camera.n));
+    const bool easily = is_worth_it(easier, same, other, other_walk);
+    EXPECT_LE(on, easily);
+    saved += easily && !on;
     const double is = on ? double(luminance(copy[copy.n - 1].beta)) : 0;
     ++tried[camera.n], ended[camera.n] += !on;
     before += double(was), after += is, square += sqr(is - double(was));
@@ -46,6 +58,7 @@ TEST(Arrival, KeepsTheMeanAndEndsWhatJoinsBeforeBring) {
   EXPECT_NEAR(after, before, 4 * std::sqrt(square));
   EXPECT_GT(std::sqrt(square), 1) << "some end";
   EXPECT_LT(std::sqrt(square), 0.03 * before);
+  EXPECT_GT(saved, 0) << "where more are to go on (G16)";
   EXPECT_EQ(ended[2], 0) << "what the lens sees is not joined before";
   EXPECT_GT(10 * ended[3], tried[3]);
 }

@@ -63,6 +63,14 @@ TEST(Balance, LooksOnceAtWhatItSaw) {
   EXPECT_EQ(b.goes_on, Balance::most);
 }
 
+TEST(Balance, OneFireflySaysNothing) {
+  const Film film = even_film();
+  Balance b = balance_of(film, 0.2, 0.1);
+  b.found[7].square = 1e6f;
+  rebalance(film, b);
+  EXPECT_NEAR(b.goes_on, std::sqrt(2), 1e-3);
+}
+
 TEST(Balance, BlackImagesSayNothing) {
   Film film = even_film();
   Balance b = balance_of(film, 0.3, 0.1);

@@ -45,7 +45,7 @@ struct GuideSample {
   float pdf_reverse = 0;
   float eta = 1;
   bool delta = false;
-  float goes_on = 1;  ///< probability with which roulette let it
+  float goes_on = 1;  ///< probability with which roulette let it go on
 };
 
 /// Resolves the material at the surface for a viewer in direction wo, and finds the cell. fields may be null.

@@ -87,6 +87,8 @@ double estimate_sample_error(const Film& film);
 /// The same of something else that varies from sample to sample, given per pixel [luminance^2]: relative to the image,
 /// without the worst 0.1 % of pixels.
 double relative_variance(const Film& film, std::vector<double> variances);
+/// Leaves out the worst 0.1 % of pixels, given one error each; the others change places.
+void trim(std::vector<double>& errors);
 inline double estimated_error(const Film& film) { return estimate_error(film).relmse; }
 
 }  // namespace ajar

@@ -16,7 +16,7 @@ struct Counters {
   uint64_t camera_rays = 0, light_rays = 0, shadow_rays = 0;
   uint64_t camera_paths = 0, light_paths = 0;
   uint64_t zero_paths = 0;  ///< samples that brought nothing: black, and no splat
-  uint64_t joins = 0;       ///< tried at camera vertices, next-event estimations too
+  uint64_t joins = 0;       ///< tried at camera vertices: next-event estimations and hits of lights too
   uint64_t beyond = 0;      ///< rays of camera subpaths and joins behind the first vertex that is joined, where
                             ///< roulette might have ended the subpath
 
