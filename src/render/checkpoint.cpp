@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <bit>
+#include <cmath>
 
 #include "ajar/core/bytes.h"
 #include "ajar/core/error.h"
@@ -9,7 +9,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind checkpoint_kind = {"AJARck18", "checkpoint", "render once with --checkpoint",
+constexpr FileKind checkpoint_kind = {"AJARck19", "checkpoint", "render once with --checkpoint",
                                       "start again without --resume"};
 
 // One list of fields for both ways.
@@ -92,7 +92,7 @@ void save_checkpoint(const std::string& path, const std::string& key, const Rend
     w.value(uint8_t(state.pyramid.kept)), w.value(uint64_t(state.pyramid.layers.size()));
     for (const auto& [st, layer] : state.pyramid.layers)
       w.value(st.first), w.value(st.second), w.array(layer.raw), w.array(layer.weighted);
-    w.value(state.pixels_per_light), w.value(state.effort);
+    w.value(state.light_rate), w.value(state.effort);
     balance_fields(w, state.balance);
     plain_fields(w, state.plain);
     write(w, state.learning);
@@ -117,9 +117,10 @@ void load_checkpoint(const std::string& path, const std::string& key, RenderStat
     throw Error(path + ": made without --techniques, whose images would lack its passes; leave --techniques out");
   read(r, state.pyramid);
   if (!state.pyramid.kept) state.pyramid = {};
-  r.value(state.pixels_per_light), r.value(state.effort);
+  r.value(state.light_rate), r.value(state.effort);
   r.require(state.effort >= RenderState::least_effort && state.effort <= 1);
-  r.require(std::has_single_bit(state.pixels_per_light) && state.pixels_per_light <= RenderState::least_light);
+  r.require(state.light_rate >= RenderState::least_light && state.light_rate <= RenderState::most_light &&
+            std::exp2(std::round(std::log2(state.light_rate))) == state.light_rate);
   balance_fields(r, state.balance);
   r.require(state.balance.goes_on >= Balance::least && state.balance.goes_on <= Balance::most);
   r.require(state.balance.found.empty() || state.balance.found.size() == pixels);

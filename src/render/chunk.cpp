@@ -2,9 +2,13 @@
 
 #include "chunk.h"
 
+#include <cmath>
+
 #include "ajar/join/pool.h"
 
 namespace ajar {
+
+double light_halves(size_t samples, float rate) { return std::ceil(double(samples) * double(rate)); }
 
 uint32_t share_of(const Job& job, const Film& film) {
   return job.guided && job.learning ? traced_one_in(*job.learning, film) : 1;
@@ -78,15 +82,20 @@ void trace_light_halves(const Job& job, Film& film, uint32_t chunk, Scratch& scr
     }
   clear(halves.store), clear(scratch.traced);
   halves.photons.clear(), halves.few.clear();
-  const size_t count = halves.samples.size(), n = job.pixels_per_light;
+  const size_t count = halves.samples.size();
   halves.splat_counts = float(share_of(job, film));
-  if (count > 0) halves.splat_counts *= float(count) / float((count + n - 1) / n);
+  if (count > 0) halves.splat_counts *= float(double(count) / light_halves(count, job.light_rate));
   if (!job.light_half) return;
   // W learns from as many subpaths as Q does.
-  const uint32_t recorded =
-      job.learning ? std::max(recorded_one_in(*job.learning, film) / job.pixels_per_light, 1u) : 1;
-  for (size_t i = 0; i < count; i += n)
-    halves.samples[i].splat = trace_half(job, halves.samples[i].sample, recorded, scratch);
+  const uint32_t usual = job.learning ? recorded_one_in(*job.learning, film) : 1;
+  const uint32_t recorded = std::max(uint32_t(float(usual) * job.light_rate), 1u);
+  const size_t step = size_t(std::max(1 / job.light_rate, 1.0f)), each = size_t(std::max(job.light_rate, 1.0f));
+  for (size_t i = 0; i < count; i += step)
+    for (size_t k = 0; k < each; ++k) {
+      Sample sample = halves.samples[i].sample;
+      sample.path += k * film.pixels();  // numbers of its own
+      halves.samples[i].splat |= trace_half(job, sample, recorded, scratch);
+    }
   keep(halves.store, {&scratch.traced}, job.kept, number_of(job, film, chunk));
 }
 

@@ -10,6 +10,8 @@ namespace ajar {
 float number_of(const Job& job, const Film& film, uint32_t chunk);
 /// One pixel in so many is traced.
 uint32_t share_of(const Job& job, const Film& film);
+/// Light halves of so many samples of a chunk.
+double light_halves(size_t samples, float rate);
 /// The samples of a chunk and, where light subpaths are stored, their light halves.
 void trace_light_halves(const Job& job, Film& film, uint32_t chunk, Scratch& scratch);
 /// What the samples of the scratch's halves see.

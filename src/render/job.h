@@ -55,7 +55,7 @@ struct Job {
   bool merges_alone = false;           ///< nothing but merges brings light, so they need no weights
   int final_gather = 0;                ///< of photon, see RenderOptions
   const Vpls* vpls = nullptr;
-  uint32_t pixels_per_light = 1;       ///< one light half for so many samples of a chunk
+  float light_rate = 1;                ///< light halves for each sample of a chunk, a power of two
   bool guided = false;                 ///< fields guide subpaths, and learn from them; else lights alone are learned
   const Learning* learning = nullptr;  ///< null: nothing is learned
   Training* training = nullptr;
@@ -65,7 +65,7 @@ struct Job {
 /// found.
 struct Sample {
   int x = 0, y = 0;
-  uint64_t path = 0;  ///< index of the pixel
+  uint64_t path = 0;  ///< index of the pixel; of its further light halves so many times the number of pixels more
   uint32_t pass = 0;
   Vec2 raster{0}, lens{0};
   float filter = 1;  ///< what the filter makes of the camera path's radiance, times that for how many samples of the

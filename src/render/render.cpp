@@ -93,19 +93,24 @@ uint32_t equal_chunks(uint32_t all, uint32_t most) {
 }
 
 // Light subpaths of chunks from .. from + count - 1.
-double light_paths_of(const Film& film, uint32_t from, uint32_t count, uint32_t pixels_per_light) {
+double light_paths_of(const Film& film, uint32_t from, uint32_t count, float rate) {
   double sum = 0;
   for (uint32_t chunk = from; chunk < from + count; ++chunk)
-    sum += (uint32_t(tile_bounds(film, chunk).pixels()) + pixels_per_light - 1) / pixels_per_light;
+    sum += light_halves(tile_bounds(film, chunk).pixels(), rate);
   return sum;
 }
 
 // What a sample's error is (estimate_sample_error), above which an image is noisy, and below which it is quiet; share
-// of the light that is caustics, which light subpaths alone find. Measured (docs/results/joins.md).
-constexpr double noisy = 0.25, quiet = 0.15, shining = 0.01;
+// of the light that is caustics, which light subpaths alone find, and where they are to be twice as many as pixels.
+// Measured (docs/results/joins.md).
+constexpr double noisy = 0.25, quiet = 0.15, shining = 0.01, twice = 0.25;
 
-uint32_t pixels_per_light(const Film& film, const Ledger& ledger) {
-  if (ledger.caustics > shining * total_energy(ledger)) return RenderState::most_light;  // (J5)
+float light_rate(const Film& film, const Ledger& ledger) {
+  const double caustics = ledger.caustics / total_energy(ledger);
+  if (caustics > shining) {
+    const double rate = std::exp2(std::floor(std::log2(2 * caustics / twice)));
+    return std::clamp(float(rate), RenderState::caustic_light, RenderState::most_light);  // (J5)
+  }
   const double error = estimate_sample_error(film);
   if (error < quiet) return RenderState::least_light;
   return error < noisy ? RenderState::usual_light : RenderState::noisy_light;
@@ -147,14 +152,14 @@ void balance_pass(bool plain, RenderState& state, Job& job) {
 void plan_pass(bool joined, bool plain, RenderState& state, Job& job) {
   const Film& film = state.film;
   const bool looks = !plain && film.chunks == 0 && std::has_single_bit(film.passes);
-  if (joined && looks && film.passes >= 8) state.pixels_per_light = pixels_per_light(film, state.stats.ledger);
+  if (joined && looks && film.passes >= 8) state.light_rate = light_rate(film, state.stats.ledger);
   if (const float effort = looks ? effort_for(state.stats.ledger) : 0; effort > 0) state.effort = effort;
   job.effort = state.effort;
   if (job.guided && job.light_half)
     job.walk.seen_share = std::max(most_seen_joins * sqr(double(state.effort)), least_seen_joins);
   const bool knows = joined && !plain && state.learning.fields.generation >= blind_generations;
-  job.pixels_per_light = knows ? state.pixels_per_light : 1;
-  job.walk.light_paths = film.splats ? light_paths_of(film, 0, chunk_count(film), job.pixels_per_light) : 0;
+  job.light_rate = knows ? state.light_rate : 1;
+  job.walk.light_paths = film.splats ? light_paths_of(film, 0, chunk_count(film), job.light_rate) : 0;
 }
 
 // What merges beyond the first vertex at which a camera subpath is merged count for (K3). They share the walk that
@@ -185,10 +190,12 @@ Merging merging_of(const Scene& scene, const RenderOptions& options, const Film&
 }
 
 void note_rejected(RenderStats& stats, const std::vector<uint64_t>& pixels, const Film& film, uint64_t seed) {
-  for (const uint64_t p : pixels)
-    if (p != Scratch::no_path && stats.replay.size() < 5)
-      stats.replay.push_back(fmt::format("pixel {},{} pass {} seed {}", p % uint64_t(film.width),
-                                         p / uint64_t(film.width), film.dropped + film.passes, seed));
+  for (const uint64_t path : pixels)
+    if (path != Scratch::no_path && stats.replay.size() < 5) {
+      const uint64_t p = path % film.pixels(), width = uint64_t(film.width);
+      stats.replay.push_back(
+          fmt::format("pixel {},{} pass {} seed {}", p % width, p / width, film.dropped + film.passes, seed));
+    }
 }
 
 // The job of a pass that joins virtual point lights, which it places.

@@ -1,7 +1,9 @@
 // What is traced, recorded and dropped when, what guides, and when a render ends.
 #include <algorithm>
 
+#include "ajar/scene/load.h"
 #include "bytes.h"
+#include "kit/files.h"
 
 namespace ajar {
 namespace {
@@ -18,16 +20,16 @@ TEST(Determinism, LightSubpathsAreAsManyAsNoiseAsksFor) {
     RenderOptions o = options_of("guided-bdpt", 8);
     RenderState state = rendered(scene, accel, o);
     const double pixels = double(state.film.pixels()), young = pixels * blind_generations;
-    EXPECT_EQ(state.pixels_per_light, RenderState::noisy_light) << factor << ", not looked at yet";
+    EXPECT_EQ(state.light_rate, RenderState::noisy_light) << factor << ", not looked at yet";
     EXPECT_NEAR(double(state.stats.counters.light_paths), young + 8 * pixels / 2, 0.02 * young);
     o.spp = 9;
     render(scene, accel, o, state, {});
-    EXPECT_EQ(state.pixels_per_light, RenderState::least_light) << factor;
+    EXPECT_EQ(state.light_rate, RenderState::least_light) << factor;
     EXPECT_NEAR(double(state.stats.counters.light_paths), young + 8 * pixels / 2 + pixels / 8, 0.02 * young);
     EXPECT_EQ(state.stats.ledger.caustics, 0) << factor;
   }
   const Scene rooms = two_rooms(5);
-  EXPECT_EQ(rendered(rooms, Accel(rooms), options_of("guided-bdpt", 9)).pixels_per_light, RenderState::noisy_light);
+  EXPECT_EQ(rendered(rooms, Accel(rooms), options_of("guided-bdpt", 9)).light_rate, RenderState::noisy_light);
 }
 
 // What comes through glass is left to light subpaths.
@@ -38,7 +40,28 @@ TEST(Determinism, CausticsGetAllLightSubpaths) {
   for (const auto& row : state.stats.ledger.strategies) splats += row[1].energy;
   EXPECT_GT(state.stats.ledger.caustics, 0.02 * total_energy(state.stats.ledger));
   EXPECT_LT(state.stats.ledger.caustics, splats);
-  EXPECT_EQ(state.pixels_per_light, RenderState::most_light);
+  EXPECT_EQ(state.light_rate, RenderState::caustic_light);
+}
+
+// Where most of the light is caustics there are several for each pixel, and their splats count the less.
+TEST(Determinism, MostlyCausticsGetMoreLightSubpathsThanPixels) {
+  LoadOptions load;
+  load.defines = {{"resx", "48"}, {"resy", "36"}};
+  const Scene scene = load_scene(source_path("scenes/mirrors/mirrors.xml"), load);
+  const Accel accel(scene);
+  const RenderState state = rendered(scene, accel, options_of("guided-bdpt", 64));
+  const double pixels = double(state.film.pixels());
+  EXPECT_EQ(state.light_rate, RenderState::most_light);
+  const double light_paths = blind_generations + 8 * double(RenderState::noisy_light) + 56 * double(state.light_rate);
+  EXPECT_NEAR(double(state.stats.counters.light_paths), light_paths * pixels, 0.02 * light_paths * pixels);
+  const auto mean = [](const RenderState& s) {
+    double sum = 0;
+    for (const float x : develop(s.film).pixels) sum += double(x);
+    return sum;
+  };
+  const double truth = mean(rendered(scene, accel, options_of("bdpt", 512)));
+  EXPECT_NEAR(mean(state), truth, 0.25 * truth)
+      << "rare and bright; splats that counted once each would make it thrice";
 }
 
 // What young fields need is so many paths, however many pixels there are.

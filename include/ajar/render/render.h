@@ -28,10 +28,11 @@ struct RenderState {
   Pyramid pyramid;  ///< filled when RenderOptions::techniques
   RenderStats stats;
   Learning learning;  ///< of guided integrators
-  /// One light subpath for so many, where camera subpaths join vertices of a whole tile. Looked at anew after 8, 16, 32
-  /// ... passes.
-  uint32_t pixels_per_light = noisy_light;
-  static constexpr uint32_t most_light = 1, noisy_light = 2, usual_light = 4, least_light = 8;
+  /// Light subpaths for each pixel, a power of two, where camera subpaths join vertices of a whole tile. Looked at anew
+  /// after 8, 16, 32 ... passes.
+  float light_rate = noisy_light;
+  static constexpr float least_light = 0.125f, usual_light = 0.25f, noisy_light = 0.5f, caustic_light = 1,
+                         most_light = 4;
   /// Spent on joins, of what may be: by the share of the light that they bring (J8). Looked at anew after 1, 2, 4 ...
   /// passes.
   float effort = 0.5f;
