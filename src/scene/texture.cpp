@@ -143,6 +143,21 @@ Rgb mean_texel(const Image& image, Channel channel) {
   return sum / (double(image.width) * double(image.height));
 }
 
+Rgb largest_texel(const Texture& t, const Image& image) {
+  Rgb largest = t.wrap_u == Wrap::one || t.wrap_v == Wrap::one ? Rgb(1) : Rgb(0);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) largest = glm::max(largest, texel(image, x, y, t.channel));
+  return largest;
+}
+
+Rgb largest_value(const Texture& t, const Mesh* mesh) {
+  if (mesh == nullptr) return Rgb(infinity);
+  Rgb largest(0);
+  bool of_faces;
+  for (const Rgb& c : values_of(*mesh, t.attribute, of_faces)) largest = glm::max(largest, c);
+  return largest;
+}
+
 Rgb mean_attribute(const Scene& scene, const Texture& texture) {
   glm::dvec3 sum(0);
   size_t n = 0;
@@ -170,6 +185,8 @@ Rgb eval(const Scene& scene, const Slot& slot, const Surface& at) {
       return eval(scene, t.color0, at) * eval(scene, t.color1, at);
     case TextureKind::mesh_attribute:
       return eval_attribute(scene, t, at);
+    case TextureKind::limit:
+      return glm::clamp(eval(scene, t.color0, at), Rgb(0), Rgb(1));
   }
   return Rgb(0);
 }
@@ -190,6 +207,8 @@ Vec2 eval_gradient(const Scene& scene, const Slot& slot, const Surface& at) {
              eval_gradient(scene, t.color1, at) * eval_scalar(scene, t.color0, at);
     case TextureKind::mesh_attribute:
       return {0, 0};
+    case TextureKind::limit:
+      return eval_gradient(scene, t.color0, at);
   }
   return {0, 0};
 }
@@ -210,6 +229,27 @@ Rgb mean(const Scene& scene, const Slot& slot) {
       return mean(scene, t.color0) * mean(scene, t.color1);
     case TextureKind::mesh_attribute:
       return mean_attribute(scene, t);
+    case TextureKind::limit:
+      return glm::clamp(mean(scene, t.color0), Rgb(0), Rgb(1));
+  }
+  return Rgb(0);
+}
+
+Rgb maximum(const Scene& scene, const Slot& slot, const Mesh* mesh) {
+  if (slot.texture == none) return slot.value;
+  const Texture& t = scene.textures[slot.texture];
+  switch (t.kind) {
+    case TextureKind::bitmap:
+      return largest_texel(t, scene.images[t.image]);
+    case TextureKind::checkerboard:
+    case TextureKind::grid:
+      return glm::max(maximum(scene, t.color0, mesh), maximum(scene, t.color1, mesh));
+    case TextureKind::scale:
+      return maximum(scene, t.color0, mesh) * maximum(scene, t.color1, mesh);
+    case TextureKind::mesh_attribute:
+      return largest_value(t, mesh);
+    case TextureKind::limit:
+      return glm::min(maximum(scene, t.color0, mesh), Rgb(1));
   }
   return Rgb(0);
 }

@@ -362,12 +362,12 @@ uint32_t stand_in(Loader& loader, const Node& node) {
 }  // namespace
 
 void limit_sum(Params& p, Material& m) {
-  if (m.reflectance.texture != none || m.specular.texture != none) return;
-  const float sum = max_component(m.reflectance.value + m.specular.value);
+  const Scene& scene = p.loader.scene;
+  const float sum = max_component(maximum(scene, m.reflectance) + maximum(scene, m.specular));
   if (sum <= 1) return;
   note(p.loader, p.node, "diffuse and specular reflectance add up to more than 1: both were scaled down");
-  m.reflectance.value /= sum;
-  m.specular.value /= sum;
+  for (Slot* slot : {&m.reflectance, &m.specular})
+    *slot = slot->texture == none ? Slot(slot->value / sum) : product(p, *slot, 1 / sum);
 }
 
 uint32_t add_material(Loader& loader, const Node& node, const Material& material) {

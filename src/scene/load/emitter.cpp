@@ -44,7 +44,8 @@ void envmap(Params& p) {
   const std::string path = file(p, "filename");
   const double scale = number(p, "scale", 1);
   if (scale < 0) fail(p.loader, p.node, "scale should not be negative");
-  const uint32_t image = load_image_file(p.loader, p.node, path, boolean(p, "raw", false), number(p, "gamma", 0));
+  const uint32_t stored = load_image_file(p.loader, p.node, path, boolean(p, "raw", false), number(p, "gamma", 0));
+  const uint32_t image = limited_image(p.loader, p.node, stored, Colour::emission);
   light.to_world = orientation(regular_to_world(p));
   light.environment = uint32_t(p.loader.scene.environments.size());
   p.loader.scene.environments.push_back(make_environment(p.loader.scene, image, float(scale)));

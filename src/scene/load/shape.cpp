@@ -199,41 +199,55 @@ struct Entry {
 constexpr Entry entries[] = {{"obj", obj}, {"rectangle", rectangle}, {"sphere", sphere}, {"serialized", serialized},
                              {"ply", ply}, {"cube", cube},           {"disk", disk},     {"cylinder", cylinder}};
 
-// Names of the mesh attributes that a slot shows.
-void list_attributes(const Scene& scene, const Slot& slot, std::set<std::string>& out) {
+// What the textures of a shape need of its mesh.
+struct Shown {
+  std::set<std::string> attributes;
+  std::set<uint32_t> limits;  // textures of TextureKind::limit
+};
+
+void list_shown(const Scene& scene, const Slot& slot, Shown& out) {
   if (slot.texture == none) return;
   const Texture& t = scene.textures[slot.texture];
-  if (t.kind == TextureKind::mesh_attribute) out.insert(t.attribute);
-  if (t.kind == TextureKind::checkerboard || t.kind == TextureKind::grid || t.kind == TextureKind::scale)
-    for (const Slot* inner : {&t.color0, &t.color1}) list_attributes(scene, *inner, out);
+  if (t.kind == TextureKind::mesh_attribute) out.attributes.insert(t.attribute);
+  if (t.kind == TextureKind::limit) out.limits.insert(slot.texture);
+  if (t.kind != TextureKind::bitmap && t.kind != TextureKind::mesh_attribute)
+    for (const Slot* inner : {&t.color0, &t.color1}) list_shown(scene, *inner, out);
 }
-void list_attributes(const Scene& scene, uint32_t material, std::set<std::string>& out) {
+void list_shown(const Scene& scene, uint32_t material, Shown& out) {
   const Material& m = scene.materials[material];
   for (const Slot* slot : {&m.reflectance, &m.specular, &m.transmittance, &m.alpha_u, &m.alpha_v, &m.exponent,
                            &m.weight, &m.map, &m.roughness, &m.anisotropic, &m.metallic, &m.spec_trans, &m.spec_tint,
                            &m.sheen, &m.sheen_tint, &m.clearcoat, &m.clearcoat_gloss, &m.flatness})
-    list_attributes(scene, *slot, out);
+    list_shown(scene, *slot, out);
   for (const uint32_t nested : m.nested)
-    if (nested != none) list_attributes(scene, nested, out);
+    if (nested != none) list_shown(scene, nested, out);
+}
+
+void note_limits(Loader& loader, const Node& node, const Shown& shown, const Mesh& mesh) {
+  for (const uint32_t limit : shown.limits)
+    if (max_component(maximum(loader.scene, loader.scene.textures[limit].color0, &mesh)) > 1)
+      note(loader, node, "its mesh attributes make reflectances above 1: there they become 1");
 }
 
 // What the textures of a shape show has to be in its mesh.
 void check_attributes(Loader& loader, const Node& node, const Shape& shape) {
   const Scene& scene = loader.scene;
-  std::set<std::string> wanted, there;
-  list_attributes(scene, shape.material, wanted);
-  if (shape.light != none) list_attributes(scene, scene.lights[shape.light].radiance, wanted);
-  if (wanted.empty()) return;
+  Shown shown;
+  std::set<std::string> there;
+  list_shown(scene, shape.material, shown);
+  if (shape.light != none) list_shown(scene, scene.lights[shape.light].radiance, shown);
+  if (shown.attributes.empty()) return;
   if (shape.kind == ShapeKind::mesh) {
     const Mesh& mesh = scene.meshes[shape.mesh];
     if (!mesh.colors.empty()) there.insert("vertex_color");
     for (const Attribute& a : mesh.attributes) {
       there.insert(a.name);
-      if (wanted.contains(a.name) && !std::all_of(a.values.begin(), a.values.end(), is_finite))
+      if (shown.attributes.contains(a.name) && !std::all_of(a.values.begin(), a.values.end(), is_finite))
         fail(loader, node, fmt::format("the mesh attribute \"{}\" has values that are not finite", a.name));
     }
+    note_limits(loader, node, shown, mesh);
   }
-  for (const std::string& name : wanted)
+  for (const std::string& name : shown.attributes)
     if (!there.contains(name))
       unsupported(loader, node,
                   fmt::format("its textures show the mesh attribute \"{}\", which it lacks; it has {}",
