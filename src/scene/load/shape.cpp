@@ -145,8 +145,8 @@ void file_mesh(Params& p, Shape& shape, const std::string& key, MeshOptions opti
   options.flip_v = boolean(p, "flip_tex_coords", options.flip_v);
   Mesh mesh;
   try {
-    const std::string exact = fmt::format("{}|{}{}{}|{}", key, options.face_normals, options.flip_normals,
-                                          options.flip_v, options.max_smooth_angle);
+    const std::string exact = fmt::format("{}|{}{}{}{}|{}|{}", key, options.face_normals, options.flip_normals,
+                                          options.flip_v, options.apart, options.group, options.max_smooth_angle);
     const int left = --p.loader.mesh_uses[key];
     if (take_placed(p.loader, exact, m, mesh)) {
       shape.mesh = add_mesh(p, std::move(mesh));
@@ -174,7 +174,11 @@ void obj(Params& p, Shape& shape, const Part& part) {
   MeshOptions options;
   options.flip_v = true;
   options.takes_material = part.takes;
-  file_mesh(p, shape, part.takes ? path + "#" + part.name : path, options, [&](const MeshOptions& o) {
+  options.weld = p.loader.document.old;
+  options.apart = p.loader.document.old && !boolean(p, "collapse", false);
+  options.group = obj_group(p);
+  const std::string key = options.group < 0 ? path : fmt::format("{}#{}", path, options.group);
+  file_mesh(p, shape, part.takes ? key + "#" + part.name : key, options, [&](const MeshOptions& o) {
     const bool open = part.takes || (p.loader.obj && p.loader.obj->name == path);
     return open ? join(open_obj(p.loader, path), o) : read_obj(path, o);
   });

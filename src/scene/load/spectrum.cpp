@@ -10,8 +10,6 @@
 namespace ajar {
 namespace {
 
-double from_srgb(double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); }  // IEC 61966-2-1
-
 Rgb checked(Loader& loader, const Node& node, Rgb c, Colour kind) {
   if (!is_finite(c)) fail(loader, node, "is beyond the range of numbers; take smaller ones");
   const bool is_number = node.tag == "float" || node.tag == "integer" || node.tag == "string";
@@ -172,6 +170,8 @@ Rgb plugin_spectrum(Loader& loader, const Node& node, Colour kind) {
 }
 
 }  // namespace
+
+double from_srgb(double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); }
 
 Rgb colour_of(Loader& loader, const Node& node, Colour kind) {
   if (node.tag == "spectrum" || node.tag == "texture")
