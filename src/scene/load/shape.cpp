@@ -184,9 +184,21 @@ void obj(Params& p, Shape& shape, const Part& part) {
   });
 }
 
+// Colours of vertices that are encoded as sRGB, as linear ones.
+void decode(std::vector<Rgb>& colors) {
+  const auto linear = [](float x) { return float(std::min(from_srgb(x), 1e30)); };  // finite
+  for (Rgb& c : colors) c = {linear(c.x), linear(c.y), linear(c.z)};
+}
+
 void ply(Params& p, Shape& shape, const Part&) {
   const std::string path = file(p, "filename");
-  file_mesh(p, shape, path, {}, [&](const MeshOptions& o) { return read_ply(path, o); });
+  const bool srgb = p.loader.document.old && boolean(p, "srgb", true);
+  const bool linear = p.loader.document.old && !srgb;
+  file_mesh(p, shape, linear ? path + "#linear" : path, {}, [&](const MeshOptions& o) {
+    Mesh mesh = read_ply(path, o);
+    if (srgb) decode(mesh.colors);
+    return mesh;
+  });
 }
 
 void serialized(Params& p, Shape& shape, const Part&) {
@@ -267,6 +279,16 @@ void refuse_media(Params& p) {
     unsupported(p.loader, *inside, "subsurface scattering is not supported", "left out");
 }
 
+// What stands in a shape by a misunderstanding.
+void note_strays(Params& p, const char* tag, const char* text) {
+  for (size_t i = 0; i < p.node.children.size(); ++i) {
+    const Node& child = p.node.children[i];
+    if (p.used[i] || follow(p.loader, child).tag != tag) continue;
+    p.used[i] = true;
+    note(p.loader, child, text);
+  }
+}
+
 void load_instance(Loader& loader, const Node& node, uint32_t group) {
   if (group != none)
     fail(loader, node, "an instance inside a shapegroup is not supported; put the shapes that it shows there");
@@ -280,6 +302,8 @@ void load_instance(Loader& loader, const Node& node, uint32_t group) {
   instance.to_world = Mat4(m);
   instance.to_object = Mat4(glm::inverse(m));
   loader.scene.instances.push_back(instance);
+  note_strays(p, "bsdf", "an instance shows its shapegroup as it is: not used; give it to the shapes of the group");
+  note_strays(p, "emitter", "an instance shows its shapegroup as it is: not used; a light stands beside the group");
   finish(p, {"id"});
 }
 
@@ -357,6 +381,7 @@ void load_shape(Loader& loader, const Node& node, uint32_t group) {
   if (entry == std::end(entries))
     return unsupported(loader, node, fmt::format("unknown shape; {}", supported), "left out");
   for (const Part& part : parts_of(p)) load_part(p, entry->read, part, group);
+  note_strays(p, "texture", "a texture is no bsdf: not used; put it inside one, <bsdf type=\"diffuse\">");
   finish(p, {"id", "velocity", "collapse"});
 }
 
