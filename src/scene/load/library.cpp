@@ -54,7 +54,7 @@ struct Library {
 };
 
 Library read_library(Params& p, const std::string& path) {
-  count_file(p.loader, path);
+  count_file(p.loader, p.node, path);
   Library library{path, {}};
   try {
     library.file = parse_mtl(read_bytes(path), path);
@@ -74,7 +74,7 @@ Slot slot_of_map(Params& p, const std::string& library, const MtlMap& map, Colou
     note(p.loader, p.node, fmt::format("{}: there is no file \"{}\": left out", library, map.file));
     return otherwise;
   }
-  count_file(p.loader, path);
+  count_file(p.loader, p.node, path);
   Texture t;
   t.flip_v = false;
   t.image = load_image_file(p.loader, p.node, path, kind == Colour::ratio, 0);

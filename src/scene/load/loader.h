@@ -53,8 +53,8 @@ void note(Loader& loader, const Node& node, const std::string& text);
 /// For what Ajar lacks: an Error, or with --lenient a note that ends in what is done instead.
 void unsupported(Loader& loader, const Node& node, const std::string& text, const std::string& instead);
 
-/// Adds a file that is read to Scene::content.
-void count_file(Loader& loader, const std::string& path);
+/// Adds a file that is read, which the element names, to Scene::content. Throws Error where it is not the file itself.
+void count_file(Loader& loader, const Node& node, const std::string& path);
 
 /// The element itself, or what a <ref> means.
 const Node& follow(const Loader& loader, const Node& node);

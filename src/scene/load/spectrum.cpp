@@ -77,8 +77,8 @@ List pairs_of(const Loader& loader, const Node& node, std::string value) {
 
 List pairs_of_file(Loader& loader, const Node& node, const std::string& name) {
   const std::string path = find_file(loader.document, node, name);
-  if (path.empty()) fail(loader, node, fmt::format("there is no file \"{}\"; correct the name", name.substr(0, 200)));
-  count_file(loader, path);
+  if (path.empty()) fail(loader, node, missing_file(loader.document, node, name));
+  count_file(loader, node, path);
   List list;
   std::istringstream lines(read_text(path));
   int number = 0;
