@@ -390,8 +390,9 @@ uint32_t load_bsdf(Loader& loader, const Node& node) {
   const auto found = loader.bsdfs.find(&node);
   if (found != loader.bsdfs.end()) return found->second;
   const Open open(loader, node);
+  const std::string type = loader.document.old && node.type == "bump" ? "bumpmap" : node.type;  // as 0.4 calls it
   const auto entry =
-      std::find_if(std::begin(entries), std::end(entries), [&](const Entry& e) { return node.type == e.type; });
+      std::find_if(std::begin(entries), std::end(entries), [&](const Entry& e) { return type == e.type; });
   uint32_t index;
   if (entry == std::end(entries)) {
     index = stand_in(loader, node);

@@ -153,22 +153,18 @@ Mat4 orientation(const DMat4& m) {
 
 void load_emitter(Loader& loader, const Node& node, uint32_t shape) {
   Params p(loader, node);
-  if ((node.type == "area") != (shape != none)) {
-    if (node.type == "area") fail(loader, node, "an area light belongs inside the <shape> that emits");
-    unsupported(loader, node, "only an area light can be inside a shape", "left out");
-    return;
-  }
-  if (node.type == "area") {
+  const bool is_area = node.type == "area";
+  const auto entry =
+      std::find_if(std::begin(entries), std::end(entries), [&](const Entry& e) { return node.type == e.type; });
+  if (!is_area && entry == std::end(entries))
+    return unsupported(loader, node, fmt::format("unknown emitter; {}", supported), "left out");
+  if (is_area && shape == none) fail(loader, node, "an area light belongs inside the <shape> that emits");
+  if (!is_area && shape != none)
+    return unsupported(loader, node, "only an area light can be inside a shape", "left out");
+  if (is_area)
     area(p, shape);
-  } else {
-    const auto entry =
-        std::find_if(std::begin(entries), std::end(entries), [&](const Entry& e) { return node.type == e.type; });
-    if (entry == std::end(entries)) {
-      unsupported(loader, node, fmt::format("unknown emitter; {}", supported), "left out");
-      return;
-    }
+  else
     entry->read(p);
-  }
   finish(p, {"id", "cache", "mis_compensation", "albedo", "resolution"});
 }
 

@@ -236,6 +236,8 @@ TEST(Bsdf, BumpAndNormalMaps) {
   EXPECT_NE(last(bsdf("bumpmap", checker + bsdf("diffuse"))).map.texture, none);
   EXPECT_NE(last(bsdf("bumpmap", texture("anything") + bsdf("diffuse"))).map.texture, none);
   EXPECT_SAYS(error_of(bsdf("bumpmap", bsdf("diffuse"))), "needs a nested <texture>");
+  EXPECT_EQ(last(bsdf("bump", checker + bsdf("diffuse")), {}, "0.4.0").kind, MaterialKind::bumpmap);
+  EXPECT_SAYS(error_of(bsdf("bump", checker + bsdf("diffuse"))), "unknown bsdf");
   m = last(bsdf("normalmap", texture("normalmap") + bsdf("diffuse")));
   EXPECT_EQ(m.kind, MaterialKind::normalmap);
   EXPECT_NE(m.map.texture, none);

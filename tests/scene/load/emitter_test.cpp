@@ -246,6 +246,12 @@ TEST(Emitters, ScaleOfSunsky) {
   EXPECT_TRUE(says(old(emitter("sky", scaled("stretch", "2"))).notes, "\"stretch\" is not used"));
 }
 
+TEST(Emitters, UnknownOnesInShapes) {
+  EXPECT_SAYS(error_of("<shape type='sphere'>" + emitter("angulararea") + "</shape>"),
+              "unknown emitter; supported: area");
+  EXPECT_SAYS(error_of("<shape type='sphere'>" + emitter("point") + "</shape>"), "only an area light can be inside");
+}
+
 // Behind so much air no blue is left, and less than none of it in sRGB: that must not take the red with it.
 TEST(Emitters, LowSunIsRed) {
   for (const char* turbidity : {"3", "5.2", "8"})
