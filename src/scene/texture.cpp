@@ -1,3 +1,4 @@
+#include <array>
 #include <span>
 
 #include "ajar/scene/scene.h"
@@ -143,11 +144,24 @@ Rgb mean_texel(const Image& image, Channel channel) {
   return sum / (double(image.width) * double(image.height));
 }
 
-Rgb largest_texel(const Texture& t, const Image& image) {
-  Rgb largest = t.wrap_u == Wrap::one || t.wrap_v == Wrap::one ? Rgb(1) : Rgb(0);
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) largest = glm::max(largest, texel(image, x, y, t.channel));
-  return largest;
+// By channel; at least 0.
+template <class T>
+std::array<T, 3> largest(const std::vector<T>& numbers, size_t channels) {
+  std::array<T, 3> most{};
+  for (size_t i = 0; i + channels <= numbers.size(); i += channels)
+    for (size_t c = 0; c < channels; ++c) most[c] = std::max(most[c], numbers[i + c]);
+  return most;
+}
+
+Rgb largest_texel(const Image& image, Channel channel) {
+  if (channel == Channel::alpha) return Rgb(image.alpha.empty() ? 1 : float(largest(image.alpha, 1)[0]) / 255);
+  const size_t channels = size_t(image.channels);
+  std::array<float, 3> most = largest(image.floats, channels);
+  if (const auto bytes = largest(image.bytes, channels); !image.bytes.empty())
+    for (size_t c = 0; c < channels; ++c) most[c] = image.decode[bytes[c]];  // the table rises
+  if (channels == 1) return Rgb(most[0]);
+  if (channel != Channel::color) return Rgb(most[size_t(channel) - size_t(Channel::red)]);
+  return {most[0], most[1], most[2]};
 }
 
 Rgb largest_value(const Texture& t, const Mesh* mesh) {
@@ -240,7 +254,8 @@ Rgb maximum(const Scene& scene, const Slot& slot, const Mesh* mesh) {
   const Texture& t = scene.textures[slot.texture];
   switch (t.kind) {
     case TextureKind::bitmap:
-      return largest_texel(t, scene.images[t.image]);
+      return glm::max(largest_texel(scene.images[t.image], t.channel),
+                      Rgb(t.wrap_u == Wrap::one || t.wrap_v == Wrap::one ? 1.0f : 0.0f));
     case TextureKind::checkerboard:
     case TextureKind::grid:
       return glm::max(maximum(scene, t.color0, mesh), maximum(scene, t.color1, mesh));

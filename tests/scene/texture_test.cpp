@@ -181,6 +181,20 @@ TEST(Texture, LimitKeepsFromZeroToOne) {
 TEST(Texture, MaximumOfAll) {
   Fixture f;
   EXPECT_EQ(maximum(f.scene, f.slot), Rgb(6));
+  f.texture().channel = Channel::alpha;
+  EXPECT_EQ(maximum(f.scene, f.slot), Rgb(1));
+  f.texture().channel = Channel::color;
+  Image bytes;
+  bytes.width = 2, bytes.height = 1, bytes.channels = 3;
+  bytes.bytes = {0, 10, 200, 7, 20, 100};
+  for (int i = 0; i < 256; ++i) bytes.decode[i] = float(i) / 256;
+  f.scene.images.push_back(bytes);
+  f.texture().image = 1;
+  EXPECT_EQ(maximum(f.scene, f.slot), Rgb(7, 20, 200) / 256.0f);
+  f.texture().channel = Channel::green;
+  EXPECT_EQ(maximum(f.scene, f.slot), Rgb(20) / 256.0f);
+  f.texture().channel = Channel::color;
+  f.texture().image = 0;
   f.texture().wrap_u = Wrap::one;
   f.scene.textures.emplace_back();
   f.scene.textures[1].kind = TextureKind::scale;

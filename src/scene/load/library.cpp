@@ -23,13 +23,14 @@ std::string find_beside(const Params& p, const std::string& other, const std::st
   std::string slashes = name;
   std::replace(slashes.begin(), slashes.end(), '\\', '/');
   std::error_code ignored;
-  const auto look = [&](const std::string& spelt) -> std::string {
+  const auto beside = [&](const std::string& spelt) -> std::string {
     const fs::path path = fs::path(other).parent_path() / spelt;
-    if (!spelt.empty() && fs::is_regular_file(path, ignored)) return path.string();
-    return find_file(p.loader.document, p.node, spelt);
+    return !spelt.empty() && fs::is_regular_file(path, ignored) ? path.string() : std::string();
   };
-  for (const std::string& spelt : {name, slashes, fs::path(slashes).filename().string()})
-    if (std::string found = look(spelt); !found.empty()) return found;
+  const std::string bare = fs::path(slashes).filename().string();
+  for (std::string found : {beside(name), beside(slashes), find_file(p.loader.document, p.node, name), beside(bare),
+                            find_file(p.loader.document, p.node, bare)})
+    if (!found.empty()) return found;
   return {};
 }
 

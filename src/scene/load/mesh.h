@@ -30,6 +30,7 @@ struct MeshOptions {
   float max_smooth_angle = -1;  ///< degrees; 0 or more: normals are made anew, edges sharper than this stay sharp
   /// OBJ: whether to take faces by the name that usemtl gave them (empty before the first); all where it is not set.
   std::function<bool(std::string_view)> takes_material;
+  bool srgb = false;  ///< PLY: vertex_color is encoded as sRGB; whoever reads it has to decode it
   // OBJ, as Mitsuba 0.x has it:
   bool weld = false;   ///< corners without a normal share vertices by their position and uv, not by index
   bool apart = false;  ///< faces under different g or usemtl share no computed normals

@@ -145,8 +145,9 @@ void file_mesh(Params& p, Shape& shape, const std::string& key, MeshOptions opti
   options.flip_v = boolean(p, "flip_tex_coords", options.flip_v);
   Mesh mesh;
   try {
-    const std::string exact = fmt::format("{}|{}{}{}{}|{}|{}", key, options.face_normals, options.flip_normals,
-                                          options.flip_v, options.apart, options.group, options.max_smooth_angle);
+    const std::string exact =
+        fmt::format("{}|{}{}{}{}{}{}|{}|{}", key, options.face_normals, options.flip_normals, options.flip_v,
+                    options.srgb, options.weld, options.apart, options.group, options.max_smooth_angle);
     const int left = --p.loader.mesh_uses[key];
     if (take_placed(p.loader, exact, m, mesh)) {
       shape.mesh = add_mesh(p, std::move(mesh));
@@ -157,6 +158,7 @@ void file_mesh(Params& p, Shape& shape, const std::string& key, MeshOptions opti
     if ((left > 0 || known) && is_similarity(m) && determinant(m) > 0) {
       mesh = known ? left > 0 ? kept->second : std::move(kept->second) : read(options);
       if (left > 0 && !known) p.loader.meshes.emplace(exact, mesh);
+      if (left <= 0 && known) p.loader.meshes.erase(kept);
       transform(mesh, Mat4(m));
     } else {
       options.to_world = Mat4(m);
@@ -192,11 +194,11 @@ void decode(std::vector<Rgb>& colors) {
 
 void ply(Params& p, Shape& shape, const Part&) {
   const std::string path = file(p, "filename");
-  const bool srgb = p.loader.document.old && boolean(p, "srgb", true);
-  const bool linear = p.loader.document.old && !srgb;
-  file_mesh(p, shape, linear ? path + "#linear" : path, {}, [&](const MeshOptions& o) {
+  MeshOptions options;
+  options.srgb = p.loader.document.old && boolean(p, "srgb", true);
+  file_mesh(p, shape, path, options, [&](const MeshOptions& o) {
     Mesh mesh = read_ply(path, o);
-    if (srgb) decode(mesh.colors);
+    if (o.srgb) decode(mesh.colors);
     return mesh;
   });
 }
