@@ -36,6 +36,11 @@ Transfer transfer_of(const OIIO::ImageSpec& spec, bool raw, float gamma) {
   return {OIIO::Strutil::iequals(spec.get_string_attribute("oiio:ColorSpace"), "linear") ? 1.0f : 0.0f};
 }
 
+// Whether numbers may be negative, and whether what is not finite is mended.
+struct Reading {
+  bool raw, mend;
+};
+
 // Where the colours and alpha are among the file's channels; alpha -1: nowhere.
 struct Layout {
   int color[3] = {0, 1, 2};
@@ -130,19 +135,29 @@ void keep_bytes(Image& image, const Layout& layout, int channels, const std::vec
   for (size_t i = 0; i < pixels; ++i) image.alpha[i] = all[i * size_t(channels) + size_t(layout.alpha)];
 }
 
-void keep_floats(Image& image, const Layout& layout, int channels, const Transfer& transfer, bool raw,
+// A number of a pixel, linear. Filters that make images smaller leave slightly negative ones beside bright spots.
+float take_number(Image& image, float stored, size_t pixel, const Transfer& transfer, const Reading& reading) {
+  const float value = transfer(stored);
+  if (!std::isfinite(value)) {
+    if (!reading.mend)
+      throw Error(fmt::format("{}: pixel ({}, {}) holds {}; repair the image; with --lenient: 0 in its place",
+                              image.name, pixel % size_t(image.width), pixel / size_t(image.width), stored));
+    ++image.not_finite;
+    return 0;
+  }
+  if (!(stored < 0) || reading.raw) return value;
+  ++image.negative;
+  return 0;
+}
+
+void keep_floats(Image& image, const Layout& layout, int channels, const Transfer& transfer, const Reading& reading,
                  const std::vector<float>& all) {
   const size_t pixels = size_t(image.width) * size_t(image.height);
   image.floats.resize(pixels * size_t(image.channels));
   for (size_t i = 0; i < pixels; ++i)
-    for (int c = 0; c < image.channels; ++c) {
-      const float stored = all[i * size_t(channels) + size_t(layout.color[c])];
-      const float value = transfer(stored);
-      if (!std::isfinite(value) || (stored < 0 && !raw))
-        throw Error(fmt::format("{}: pixel ({}, {}) holds {}; repair the image (colours are finite and not negative)",
-                                image.name, i % size_t(image.width), i / size_t(image.width), stored));
-      image.floats[i * size_t(image.channels) + size_t(c)] = value;
-    }
+    for (int c = 0; c < image.channels; ++c)
+      image.floats[i * size_t(image.channels) + size_t(c)] =
+          take_number(image, all[i * size_t(channels) + size_t(layout.color[c])], i, transfer, reading);
   if (layout.alpha < 0) return;
   image.alpha.resize(pixels);
   for (size_t i = 0; i < pixels; ++i) {
@@ -161,7 +176,7 @@ void drop_idle_alpha(Image& image) {
 
 }  // namespace
 
-Image load_image(const std::string& path, bool raw, float gamma) {
+Image load_image(const std::string& path, bool raw, float gamma, bool mend) {
   check_png(path);
   OIIO::ImageSpec config;
   config.attribute("oiio:UnassociatedAlpha", 1);  // colours as they are stored
@@ -178,7 +193,7 @@ Image load_image(const std::string& path, bool raw, float gamma) {
     for (int i = 0; i < 256; ++i) image.decode[i] = transfer(float(i) / 255);
     keep_bytes(image, layout, spec.nchannels, read_all<uint8_t>(path, *input, spec, OIIO::TypeDesc::UINT8));
   } else {
-    keep_floats(image, layout, spec.nchannels, transfer, raw,
+    keep_floats(image, layout, spec.nchannels, transfer, {raw, mend},
                 read_all<float>(path, *input, spec, OIIO::TypeDesc::FLOAT));
   }
   drop_idle_alpha(image);

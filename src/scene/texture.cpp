@@ -1,3 +1,4 @@
+#include <array>
 #include <span>
 
 #include "ajar/scene/scene.h"
@@ -143,6 +144,34 @@ Rgb mean_texel(const Image& image, Channel channel) {
   return sum / (double(image.width) * double(image.height));
 }
 
+// By channel; at least 0.
+template <class T>
+std::array<T, 3> largest(const std::vector<T>& numbers, size_t channels) {
+  std::array<T, 3> most{};
+  for (size_t i = 0; i + channels <= numbers.size(); i += channels)
+    for (size_t c = 0; c < channels; ++c) most[c] = std::max(most[c], numbers[i + c]);
+  return most;
+}
+
+Rgb largest_texel(const Image& image, Channel channel) {
+  if (channel == Channel::alpha) return Rgb(image.alpha.empty() ? 1 : float(largest(image.alpha, 1)[0]) / 255);
+  const size_t channels = size_t(image.channels);
+  std::array<float, 3> most = largest(image.floats, channels);
+  if (const auto bytes = largest(image.bytes, channels); !image.bytes.empty())
+    for (size_t c = 0; c < channels; ++c) most[c] = image.decode[bytes[c]];  // the table rises
+  if (channels == 1) return Rgb(most[0]);
+  if (channel != Channel::color) return Rgb(most[size_t(channel) - size_t(Channel::red)]);
+  return {most[0], most[1], most[2]};
+}
+
+Rgb largest_value(const Texture& t, const Mesh* mesh) {
+  if (mesh == nullptr) return Rgb(infinity);
+  Rgb largest(0);
+  bool of_faces;
+  for (const Rgb& c : values_of(*mesh, t.attribute, of_faces)) largest = glm::max(largest, c);
+  return largest;
+}
+
 Rgb mean_attribute(const Scene& scene, const Texture& texture) {
   glm::dvec3 sum(0);
   size_t n = 0;
@@ -170,6 +199,8 @@ Rgb eval(const Scene& scene, const Slot& slot, const Surface& at) {
       return eval(scene, t.color0, at) * eval(scene, t.color1, at);
     case TextureKind::mesh_attribute:
       return eval_attribute(scene, t, at);
+    case TextureKind::limit:
+      return glm::clamp(eval(scene, t.color0, at), Rgb(0), Rgb(1));
   }
   return Rgb(0);
 }
@@ -190,6 +221,8 @@ Vec2 eval_gradient(const Scene& scene, const Slot& slot, const Surface& at) {
              eval_gradient(scene, t.color1, at) * eval_scalar(scene, t.color0, at);
     case TextureKind::mesh_attribute:
       return {0, 0};
+    case TextureKind::limit:
+      return eval_gradient(scene, t.color0, at);
   }
   return {0, 0};
 }
@@ -210,6 +243,28 @@ Rgb mean(const Scene& scene, const Slot& slot) {
       return mean(scene, t.color0) * mean(scene, t.color1);
     case TextureKind::mesh_attribute:
       return mean_attribute(scene, t);
+    case TextureKind::limit:
+      return glm::clamp(mean(scene, t.color0), Rgb(0), Rgb(1));
+  }
+  return Rgb(0);
+}
+
+Rgb maximum(const Scene& scene, const Slot& slot, const Mesh* mesh) {
+  if (slot.texture == none) return slot.value;
+  const Texture& t = scene.textures[slot.texture];
+  switch (t.kind) {
+    case TextureKind::bitmap:
+      return glm::max(largest_texel(scene.images[t.image], t.channel),
+                      Rgb(t.wrap_u == Wrap::one || t.wrap_v == Wrap::one ? 1.0f : 0.0f));
+    case TextureKind::checkerboard:
+    case TextureKind::grid:
+      return glm::max(maximum(scene, t.color0, mesh), maximum(scene, t.color1, mesh));
+    case TextureKind::scale:
+      return maximum(scene, t.color0, mesh) * maximum(scene, t.color1, mesh);
+    case TextureKind::mesh_attribute:
+      return largest_value(t, mesh);
+    case TextureKind::limit:
+      return glm::min(maximum(scene, t.color0, mesh), Rgb(1));
   }
   return Rgb(0);
 }

@@ -148,9 +148,9 @@ TEST_F(ImageFile, DamagedPngsAreErrorsOfOneLine) {
     EXPECT_EQ(said(bytes.substr(0, left)), path + ": the image is cut off; copy it anew") << left;
 }
 
-// The message says where.
+// The message says where; or they become 0, and are counted.
 TEST_F(ImageFile, NonsenseTexelsAreErrors) {
-  for (const float bad : {-1.0f, infinity, std::nanf("")}) {
+  for (const float bad : {infinity, -infinity, std::nanf("")}) {
     std::vector<float> values(3 * 4 * 3, 0.5f);
     values[size_t((1 * 4 + 2) * 3 + 1)] = bad;
     const std::string path = write("bad.exr", 4, 3, 3, OIIO::TypeDesc::FLOAT, values);
@@ -160,10 +160,23 @@ TEST_F(ImageFile, NonsenseTexelsAreErrors) {
     } catch (const Error& e) {
       EXPECT_NE(std::string(e.what()).find("bad.exr: pixel (2, 1)"), std::string::npos) << e.what();
     }
-    if (bad < 0) {
-      EXPECT_EQ(texel(load_image(path, true), 2, 1).y, bad);  // raw: a displacement may be negative
-    }
+    EXPECT_THROW(load_image(path, true), Error);
+    const Image mended = load_image(path, false, 0, true);
+    EXPECT_EQ(texel(mended, 2, 1), Rgb(0.5f, 0, 0.5f));
+    EXPECT_EQ(mended.not_finite, 1u);
+    EXPECT_EQ(mended.negative, 0u);
   }
+}
+
+// Resized maps of bright lights have some.
+TEST_F(ImageFile, NegativeTexelsBecomeZero) {
+  std::vector<float> values(3 * 4 * 3, 0.5f);
+  values[size_t((1 * 4 + 2) * 3 + 1)] = -1e-6f;
+  const std::string path = write("dark.exr", 4, 3, 3, OIIO::TypeDesc::FLOAT, values);
+  const Image image = load_image(path, false);
+  EXPECT_EQ(texel(image, 2, 1), Rgb(0.5f, 0, 0.5f));
+  EXPECT_EQ(image.negative, 1u);
+  EXPECT_EQ(texel(load_image(path, true), 2, 1).y, -1e-6f) << "raw: a displacement may be negative";
 }
 
 // A header that promises more than memory holds.

@@ -167,6 +167,53 @@ TEST(Texture, ScaleMultiplies) {
   EXPECT_NEAR(mean(f.scene, f.slot).x, 1.75f, 1e-6f);
 }
 
+TEST(Texture, LimitKeepsFromZeroToOne) {
+  Fixture f;
+  f.scene.textures.emplace_back();
+  f.scene.textures[1].kind = TextureKind::limit;
+  f.scene.textures[1].color0 = Slot(Rgb(-1, 0.5f, 2));
+  f.slot.texture = 1;
+  EXPECT_EQ(eval(f.scene, f.slot, {}), Rgb(0, 0.5f, 1));
+  EXPECT_EQ(mean(f.scene, f.slot), Rgb(0, 0.5f, 1));
+  EXPECT_EQ(maximum(f.scene, f.slot).z, 1);
+}
+
+TEST(Texture, MaximumOfAll) {
+  Fixture f;
+  EXPECT_EQ(maximum(f.scene, f.slot), Rgb(6));
+  f.texture().channel = Channel::alpha;
+  EXPECT_EQ(maximum(f.scene, f.slot), Rgb(1));
+  f.texture().channel = Channel::color;
+  Image bytes;
+  bytes.width = 2, bytes.height = 1, bytes.channels = 3;
+  bytes.bytes = {0, 10, 200, 7, 20, 100};
+  for (int i = 0; i < 256; ++i) bytes.decode[i] = float(i) / 256;
+  f.scene.images.push_back(bytes);
+  f.texture().image = 1;
+  EXPECT_EQ(maximum(f.scene, f.slot), Rgb(7, 20, 200) / 256.0f);
+  f.texture().channel = Channel::green;
+  EXPECT_EQ(maximum(f.scene, f.slot), Rgb(20) / 256.0f);
+  f.texture().channel = Channel::color;
+  f.texture().image = 0;
+  f.texture().wrap_u = Wrap::one;
+  f.scene.textures.emplace_back();
+  f.scene.textures[1].kind = TextureKind::scale;
+  f.scene.textures[1].color0.texture = 0;
+  f.scene.textures[1].color1 = Slot(Rgb(0.5f, 1, 2));
+  f.scene.textures.emplace_back();
+  f.scene.textures[2].kind = TextureKind::grid;
+  f.scene.textures[2].color0.texture = 1;
+  f.scene.textures[2].color1 = Slot(Rgb(4));
+  f.slot.texture = 2;
+  EXPECT_EQ(maximum(f.scene, f.slot), Rgb(4, 6, 12));
+  f.texture().kind = TextureKind::mesh_attribute;
+  f.texture().attribute = "vertex_color";
+  EXPECT_EQ(maximum(f.scene, f.slot).x, infinity);
+  Mesh mesh;
+  mesh.colors = {Rgb(3, 0, 0), Rgb(0, 7, 0)};
+  EXPECT_EQ(maximum(f.scene, f.slot, &mesh), Rgb(4, 7, 4));
+}
+
 TEST(Texture, MeanOfBitmapIsExact) {
   const Fixture f;
   EXPECT_NEAR(mean(f.scene, f.slot).x, 3.5f, 1e-6f);

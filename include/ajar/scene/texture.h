@@ -10,6 +10,7 @@
 namespace ajar {
 
 struct Scene;
+struct Mesh;
 
 /// A colour or a number of a material or light: a constant, or a texture that replaces it.
 struct Slot {
@@ -32,6 +33,7 @@ struct Image {
   std::vector<float> floats;                ///< height*width*channels, or empty
   std::vector<uint8_t> alpha;               ///< height*width, or empty
   float decode[256] = {};                   ///< value of each byte, linear
+  size_t negative = 0, not_finite = 0;      ///< how many of its numbers were so in the file, and are 0
   std::string name;                         ///< for messages
 };
 
@@ -49,7 +51,7 @@ inline Rgb texel(const Image& image, int x, int y, Channel channel = Channel::co
 }
 
 enum class Wrap : uint8_t { repeat, mirror, clamp, zero, one };
-enum class TextureKind : uint8_t { bitmap, checkerboard, grid, scale, mesh_attribute };
+enum class TextureKind : uint8_t { bitmap, checkerboard, grid, scale, mesh_attribute, limit };
 
 struct Texture {
   TextureKind kind = TextureKind::bitmap;
@@ -59,7 +61,8 @@ struct Texture {
   bool flip_v = true;     ///< bitmap: v = 0 is the lowest row of the image
   uint32_t image = none;  ///< bitmap: index into Scene::images
   Mat3 to_uv{1};          ///< applied to (u, v, 1) before the look-up
-  Slot color0{0.4f};  ///< checkerboard, where floor(2u) + floor(2v) is even; grid, its ground; scale: the nested slot
+  Slot color0{0.4f};  ///< checkerboard, where floor(2u) + floor(2v) is even; grid, its ground; scale: the nested slot;
+                      ///< limit: what is kept from 0 to 1
   Slot color1{0.2f};  ///< checkerboard, elsewhere; grid, its lines; scale: the factor
   float line_width = 0;   ///< grid: how far a line reaches to either side of a whole number
   std::string attribute;  ///< mesh_attribute: its name; black where the mesh has none of this name
@@ -74,11 +77,15 @@ float eval_scalar(const Scene& scene, const Slot& slot, const Surface& at);
 Vec2 eval_gradient(const Scene& scene, const Slot& slot, const Surface& at);
 /// Mean value over the unit square of uv; exact for constants and bitmaps that fill it.
 Rgb mean(const Scene& scene, const Slot& slot);
+/// What the channels do not exceed: the largest texels, constants, products of these. Mesh attributes have their
+/// largest value in the mesh; without one they are infinite.
+Rgb maximum(const Scene& scene, const Slot& slot, const Mesh* mesh = nullptr);
 
 /// Reads any image that OpenImageIO reads. raw: numbers as they stand; gamma 0: by the file's own colour space
 /// (8- and 16-bit sRGB, float linear), else the given exponent. Files with alpha keep colours that are not multiplied
-/// by it as they stand. Throws Error where the file is missing, damaged or larger than 2 GiB decoded, and where a texel
-/// is not finite or (unless raw) negative.
-Image load_image(const std::string& path, bool raw, float gamma = 0);
+/// by it as they stand. Negative numbers become 0 (unless raw), and with mend those that are not finite; both are
+/// counted. Throws Error where the file is missing, damaged or larger than 2 GiB decoded, and where a texel is not
+/// finite.
+Image load_image(const std::string& path, bool raw, float gamma = 0, bool mend = false);
 
 }  // namespace ajar

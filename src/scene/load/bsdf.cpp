@@ -362,12 +362,12 @@ uint32_t stand_in(Loader& loader, const Node& node) {
 }  // namespace
 
 void limit_sum(Params& p, Material& m) {
-  if (m.reflectance.texture != none || m.specular.texture != none) return;
-  const float sum = max_component(m.reflectance.value + m.specular.value);
+  const Scene& scene = p.loader.scene;
+  const float sum = max_component(maximum(scene, m.reflectance) + maximum(scene, m.specular));
   if (sum <= 1) return;
   note(p.loader, p.node, "diffuse and specular reflectance add up to more than 1: both were scaled down");
-  m.reflectance.value /= sum;
-  m.specular.value /= sum;
+  for (Slot* slot : {&m.reflectance, &m.specular})
+    *slot = slot->texture == none ? Slot(slot->value / sum) : product(p, *slot, 1 / sum);
 }
 
 uint32_t add_material(Loader& loader, const Node& node, const Material& material) {
@@ -390,8 +390,9 @@ uint32_t load_bsdf(Loader& loader, const Node& node) {
   const auto found = loader.bsdfs.find(&node);
   if (found != loader.bsdfs.end()) return found->second;
   const Open open(loader, node);
+  const std::string type = loader.document.old && node.type == "bump" ? "bumpmap" : node.type;  // as 0.4 calls it
   const auto entry =
-      std::find_if(std::begin(entries), std::end(entries), [&](const Entry& e) { return node.type == e.type; });
+      std::find_if(std::begin(entries), std::end(entries), [&](const Entry& e) { return type == e.type; });
   uint32_t index;
   if (entry == std::end(entries)) {
     index = stand_in(loader, node);

@@ -44,7 +44,8 @@ void envmap(Params& p) {
   const std::string path = file(p, "filename");
   const double scale = number(p, "scale", 1);
   if (scale < 0) fail(p.loader, p.node, "scale should not be negative");
-  const uint32_t image = load_image_file(p.loader, p.node, path, boolean(p, "raw", false), number(p, "gamma", 0));
+  const uint32_t stored = load_image_file(p.loader, p.node, path, boolean(p, "raw", false), number(p, "gamma", 0));
+  const uint32_t image = limited_image(p.loader, p.node, stored, Colour::emission);
   light.to_world = orientation(regular_to_world(p));
   light.environment = uint32_t(p.loader.scene.environments.size());
   p.loader.scene.environments.push_back(make_environment(p.loader.scene, image, float(scale)));
@@ -152,22 +153,18 @@ Mat4 orientation(const DMat4& m) {
 
 void load_emitter(Loader& loader, const Node& node, uint32_t shape) {
   Params p(loader, node);
-  if ((node.type == "area") != (shape != none)) {
-    if (node.type == "area") fail(loader, node, "an area light belongs inside the <shape> that emits");
-    unsupported(loader, node, "only an area light can be inside a shape", "left out");
-    return;
-  }
-  if (node.type == "area") {
+  const bool is_area = node.type == "area";
+  const auto entry =
+      std::find_if(std::begin(entries), std::end(entries), [&](const Entry& e) { return node.type == e.type; });
+  if (!is_area && entry == std::end(entries))
+    return unsupported(loader, node, fmt::format("unknown emitter; {}", supported), "left out");
+  if (is_area && shape == none) fail(loader, node, "an area light belongs inside the <shape> that emits");
+  if (!is_area && shape != none)
+    return unsupported(loader, node, "only an area light can be inside a shape", "left out");
+  if (is_area)
     area(p, shape);
-  } else {
-    const auto entry =
-        std::find_if(std::begin(entries), std::end(entries), [&](const Entry& e) { return node.type == e.type; });
-    if (entry == std::end(entries)) {
-      unsupported(loader, node, fmt::format("unknown emitter; {}", supported), "left out");
-      return;
-    }
+  else
     entry->read(p);
-  }
   finish(p, {"id", "cache", "mis_compensation", "albedo", "resolution"});
 }
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <sstream>
 
@@ -14,16 +15,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The file that another one means: beside that, or where the scene's files are. Empty if there is none.
+constexpr double air = 1.000277, bk7 = 1.5046;
+
+// The file that another one means: beside that, or where the scene's files are; then the same without its folders,
+// which may be another machine's. Empty if there is none.
 std::string find_beside(const Params& p, const std::string& other, const std::string& name) {
   std::string slashes = name;
   std::replace(slashes.begin(), slashes.end(), '\\', '/');
   std::error_code ignored;
-  for (const std::string& spelt : {name, slashes}) {
+  const auto beside = [&](const std::string& spelt) -> std::string {
     const fs::path path = fs::path(other).parent_path() / spelt;
-    if (!name.empty() && fs::is_regular_file(path, ignored)) return path.string();
-  }
-  return find_file(p.loader.document, p.node, name);
+    return !spelt.empty() && fs::is_regular_file(path, ignored) ? path.string() : std::string();
+  };
+  const std::string bare = fs::path(slashes).filename().string();
+  for (std::string found : {beside(name), beside(slashes), find_file(p.loader.document, p.node, name), beside(bare),
+                            find_file(p.loader.document, p.node, bare)})
+    if (!found.empty()) return found;
+  return {};
 }
 
 // A line after mtllib: one name with blanks, or several. Those that are missing are told.
@@ -47,7 +55,7 @@ struct Library {
 };
 
 Library read_library(Params& p, const std::string& path) {
-  count_file(p.loader, path);
+  count_file(p.loader, p.node, path);
   Library library{path, {}};
   try {
     library.file = parse_mtl(read_bytes(path), path);
@@ -59,18 +67,19 @@ Library read_library(Params& p, const std::string& path) {
   return library;
 }
 
-// What map_Kd and others name; otherwise where they name nothing, or what is not there.
-Slot slot_of_map(Params& p, const std::string& library, const MtlMap& map, bool raw, const Slot& otherwise) {
+// What map_Kd and others name; otherwise where they name nothing, or what is not there. Heights (ratio) are raw.
+Slot slot_of_map(Params& p, const std::string& library, const MtlMap& map, Colour kind, const Slot& otherwise) {
   if (map.file.empty()) return otherwise;
   const std::string path = find_beside(p, library, map.file);
   if (path.empty()) {
     note(p.loader, p.node, fmt::format("{}: there is no file \"{}\": left out", library, map.file));
     return otherwise;
   }
-  count_file(p.loader, path);
+  count_file(p.loader, p.node, path);
   Texture t;
   t.flip_v = false;
-  t.image = load_image_file(p.loader, p.node, path, raw, 0);
+  t.image = load_image_file(p.loader, p.node, path, kind == Colour::ratio, 0);
+  t.image = limited_image(p.loader, p.node, t.image, kind);
   t.channel = map.channel;
   t.wrap_u = t.wrap_v = map.clamp ? Wrap::clamp : Wrap::repeat;
   // the file counts v from below, and its texture coordinates were turned when they were read
@@ -82,32 +91,45 @@ Slot slot_of_map(Params& p, const std::string& library, const MtlMap& map, bool 
   return slot;
 }
 
-Rgb limited(Params& p, const MtlMaterial& m, const Rgb& c) {
-  if (max_component(c) <= 1) return c;
-  note(p.loader, p.node,
-       fmt::format("usemtl {}: a reflectance above 1 would make light from nothing: it was set to 1", m.name));
-  return glm::min(c, Rgb(1));
+// Kd or Ks, which are encoded as sRGB.
+Rgb decoded(Params& p, const MtlMaterial& m, const Rgb& c) {
+  if (max_component(c) > 1)
+    note(p.loader, p.node,
+         fmt::format("usemtl {}: a reflectance above 1 would make light from nothing: it was set to 1", m.name));
+  return glm::min(Rgb(from_srgb(c.x), from_srgb(c.y), from_srgb(c.z)), Rgb(1));
 }
 
 bool is_glass(const MtlMaterial& m) { return m.illum == 4 || m.illum == 6 || m.illum == 7 || m.illum == 9; }
 bool is_mirror(const MtlMaterial& m) { return m.illum == 5 || m.illum == 8; }
 
+// Glass and metal are those of Mitsuba's plugins, whatever Ni and Ks say.
+void note_ignored(Params& p, const MtlMaterial& m) {
+  if (is_glass(m) && m.ior > 0 && std::abs(m.ior - bk7) > 0.01)
+    note(p.loader, p.node, fmt::format("usemtl {}: its Ni is not used: glass is bk7, as in Mitsuba", m.name));
+  if (is_mirror(m) && m.has_specular)
+    note(p.loader, p.node,
+         fmt::format("usemtl {}: its Ks is not used: mirrors are of aluminium, as in Mitsuba", m.name));
+}
+
 // Without bumps and holes.
 Material surface_of(Params& p, const std::string& library, const MtlMaterial& m) {
   Material out;
+  note_ignored(p, m);
   if (is_glass(m)) {
     out.kind = MaterialKind::dielectric;
-    out.ior = m.ior > 1e-3f ? m.ior : 1.5f;
+    out.ior = float(bk7 / air);
     return out;
   }
-  const Slot specular = slot_of_map(p, library, m.map_specular, false, limited(p, m, m.specular));
   if (is_mirror(m)) {
+    const Metal* aluminium = find_metal("Al");
     out.kind = MaterialKind::conductor;
-    if (m.has_specular || specular.texture != none) out.specular = specular;
+    out.eta = aluminium->eta / float(air), out.k = aluminium->k / float(air);
     return out;
   }
-  out.reflectance = slot_of_map(p, library, m.map_diffuse, false, limited(p, m, m.diffuse));
-  if (m.illum < 2 || !(m.exponent > 0) || (specular.texture == none && is_black(specular.value))) return out;
+  out.reflectance = slot_of_map(p, library, m.map_diffuse, Colour::reflectance, decoded(p, m, m.diffuse));
+  if (m.illum != 2 || !(m.exponent > 0)) return out;
+  const Slot specular = slot_of_map(p, library, m.map_specular, Colour::reflectance, decoded(p, m, m.specular));
+  if (specular.texture == none && is_black(specular.value)) return out;
   out.kind = MaterialKind::phong;
   out.specular = specular;
   out.exponent = Slot(m.exponent);
@@ -115,17 +137,19 @@ Material surface_of(Params& p, const std::string& library, const MtlMaterial& m)
   return out;
 }
 
-// d and map_d; glass is clear by itself.
+// map_d, or d; glass is clear by itself.
 Slot opacity_of(Params& p, const std::string& library, const MtlMaterial& m) {
   if (is_glass(m)) return 1.0f;
-  if (!(m.opacity > 0)) note(p.loader, p.node, fmt::format("usemtl {} is not seen: its d is 0, or its Tr 1", m.name));
-  return product(p, slot_of_map(p, library, m.map_opacity, true, 1.0f), m.opacity);
+  const Slot opacity = slot_of_map(p, library, m.map_opacity, Colour::reflectance, m.opacity);
+  if (opacity.texture == none && !(m.opacity > 0))
+    note(p.loader, p.node, fmt::format("usemtl {} is not seen: its d is 0", m.name));
+  return opacity;
 }
 
 uint32_t load_material(Params& p, const std::string& library, const MtlMaterial& m) {
   uint32_t id = add_material(p.loader, p.node, surface_of(p, library, m));
   Material around;
-  around.map = slot_of_map(p, library, m.map_bump, true, 0.0f);
+  around.map = slot_of_map(p, library, m.map_bump, Colour::ratio, 0.0f);
   if (around.map.texture != none) {
     around.kind = MaterialKind::bumpmap;
     around.map_scale = m.map_bump.height;
@@ -140,25 +164,34 @@ uint32_t load_material(Params& p, const std::string& library, const MtlMaterial&
   return open ? add_material(p.loader, p.node, mask) : id;
 }
 
-// A look at all of the text is quick beside reading it.
-bool names_libraries(const std::string& text) { return text.find("mtllib") != text.npos; }
-
-const ObjFile* open_with_libraries(Params& p, const std::string& path) {
+// The file if it has this statement. Reading it again for its parts costs nothing.
+const ObjFile* open_with(Params& p, const std::string& path, const char* statement) {
   if (p.loader.obj && p.loader.obj->name == path) return p.loader.obj.get();
   try {
-    return names_libraries(read_bytes(path)) ? &open_obj(p.loader, path) : nullptr;
+    return read_bytes(path).find(statement) != std::string::npos ? &open_obj(p.loader, path) : nullptr;
   } catch (const Error& error) {
     fail(p.loader, p.node, error.what());
   }
 }
 
+// Which of its materials have faces in the shape, by index.
+std::vector<bool> shown_materials(Params& p, const ObjFile& obj) {
+  std::vector<bool> shown(obj.materials.size());
+  try {
+    const auto [begin, end] = faces_of(obj, obj_group(p));
+    for (size_t f = begin; f < end; ++f) shown[obj.faces[f].material] = true;
+  } catch (const Error& error) {
+    fail(p.loader, p.node, error.what());
+  }
+  return shown;
+}
+
 // The materials that faces have and no part has yet, in the order of the file.
-std::vector<std::string> materials_left(const ObjFile& obj, const std::vector<Part>& parts) {
-  std::vector<bool> has_faces(obj.materials.size());
-  for (const ObjFile::Face& face : obj.faces) has_faces[face.material] = true;
+std::vector<std::string> materials_left(Params& p, const ObjFile& obj, const std::vector<Part>& parts) {
+  const std::vector<bool> shown = shown_materials(p, obj);
   std::vector<std::string> left;
   for (size_t i = 1; i < obj.materials.size(); ++i)
-    if (has_faces[i] &&
+    if (shown[i] &&
         std::none_of(parts.begin(), parts.end(), [&](const Part& part) { return part.name == obj.materials[i]; }))
       left.push_back(obj.materials[i]);
   return left;
@@ -167,14 +200,29 @@ std::vector<std::string> materials_left(const ObjFile& obj, const std::vector<Pa
 }  // namespace
 
 const ObjFile& open_obj(Loader& loader, const std::string& path) {
-  if (!loader.obj || loader.obj->name != path)
-    loader.obj = std::make_shared<const ObjFile>(scan_obj(read_bytes(path), path));
+  if (loader.obj && loader.obj->name == path) return *loader.obj;
+  auto obj = std::make_shared<ObjFile>(scan_obj(read_bytes(path), path));
+  if (loader.document.old) weld(*obj);
+  loader.obj = std::move(obj);
   return *loader.obj;
+}
+
+int obj_group(Params& p) {
+  constexpr int most = 1 << 24;
+  if (!p.loader.document.old) return -1;
+  const bool collapse = boolean(p, "collapse", false);
+  const int index = integer(p, "shape_index", -1, -1, collapse ? 0 : most);
+  return collapse ? -1 : index;
+}
+
+bool has_material(Params& p, const std::string& name) {
+  const ObjFile* obj = open_with(p, file(p, "filename"), "usemtl");
+  return obj != nullptr && std::find(obj->materials.begin() + 1, obj->materials.end(), name) != obj->materials.end();
 }
 
 void add_library_parts(Params& p, std::vector<Part>& parts) {
   const std::string path = file(p, "filename");
-  const ObjFile* obj = open_with_libraries(p, path);
+  const ObjFile* obj = open_with(p, path, "mtllib");
   if (obj == nullptr) return;
   std::vector<Library> libraries;
   for (const std::string& line : obj->libraries)
@@ -182,7 +230,7 @@ void add_library_parts(Params& p, std::vector<Part>& parts) {
   std::map<std::string, std::pair<const Library*, const MtlMaterial*>> known;
   for (const Library& library : libraries)
     for (const MtlMaterial& m : library.file.materials) known[m.name] = {&library, &m};
-  for (const std::string& name : materials_left(*obj, parts)) {
+  for (const std::string& name : materials_left(p, *obj, parts)) {
     const auto found = known.find(name);
     if (found != known.end())
       parts.push_back({name, nullptr, [name](std::string_view m) { return m == name; },

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 
 #include "ajar/core/bytes.h"
@@ -34,7 +35,11 @@ void count_text(Document& document, const std::string& text) {
   document.content = checksum(text.data(), text.size(), checksum(&size, sizeof size, document.content));
 }
 
-void count_file(Loader& loader, const std::string& path) {
+void count_file(Loader& loader, const Node& node, const std::string& path) {
+  std::array<char, 40> head{};
+  std::ifstream(path, std::ios::binary).read(head.data(), head.size());
+  if (const std::string problem = pointer_problem({head.data(), head.size()}); !problem.empty())
+    fail(loader, node, path + problem);
   auto& sums = loader.cache ? loader.cache->files : loader.sums;
   const auto [known, added] = sums.emplace(path, 0);
   if (added) known->second = checksum_of_file(path);

@@ -53,8 +53,8 @@ void note(Loader& loader, const Node& node, const std::string& text);
 /// For what Ajar lacks: an Error, or with --lenient a note that ends in what is done instead.
 void unsupported(Loader& loader, const Node& node, const std::string& text, const std::string& instead);
 
-/// Adds a file that is read to Scene::content.
-void count_file(Loader& loader, const std::string& path);
+/// Adds a file that is read, which the element names, to Scene::content. Throws Error where it is not the file itself.
+void count_file(Loader& loader, const Node& node, const std::string& path);
 
 /// The element itself, or what a <ref> means.
 const Node& follow(const Loader& loader, const Node& node);
@@ -145,19 +145,25 @@ Rgb colour(Params& params, const char* name, const Rgb& otherwise, Colour kind);
 uint32_t load_texture(Loader& loader, const Node& node, Colour kind);
 /// Index into Scene::images; the same file decoded in the same way is read once.
 uint32_t load_image_file(Loader& loader, const Node& node, const std::string& path, bool raw, double gamma);
+/// The image with its numbers within what the kind allows; a copy where that changes it, as other textures may show it
+/// as it is.
+uint32_t limited_image(Loader& loader, const Node& node, uint32_t index, Colour kind);
 
 // Nested elements may be named again and again by <ref>; evaluating them follows every name, so their number is
 // limited.
 inline constexpr int max_tree = 64;
 uint32_t add_texture(Loader& loader, const Node& node, Texture&& texture);
 uint32_t add_material(Loader& loader, const Node& node, const Material& material);
-/// Scales constant diffuse and specular reflectances down that exceed 1 together.
+/// Scales diffuse and specular reflectances down that exceed 1 together where they are largest.
 void limit_sum(Params& params, Material& material);
 
 /// RGB of wavelength [nm] and value pairs: linear between them, zero outside.
 Rgb rgb_of_list(std::vector<std::pair<double, double>> list, Colour kind);
 /// Radiance of a black body [W/(m^2 sr nm)] at a temperature in kelvin, as RGB.
 Rgb rgb_of_blackbody(double kelvin);
+
+/// A part of a colour that is encoded as sRGB (IEC 61966-2-1), as linear light.
+double from_srgb(double encoded);
 
 struct Metal {
   const char* name;

@@ -30,7 +30,12 @@ struct MeshOptions {
   float max_smooth_angle = -1;  ///< degrees; 0 or more: normals are made anew, edges sharper than this stay sharp
   /// OBJ: whether to take faces by the name that usemtl gave them (empty before the first); all where it is not set.
   std::function<bool(std::string_view)> takes_material;
-  Mat4 to_world{1};  ///< applied before normals are made, which a mirror or uneven scale would change
+  bool srgb = false;  ///< PLY: vertex_color is encoded as sRGB; whoever reads it has to decode it
+  // OBJ, as Mitsuba 0.x has it:
+  bool weld = false;   ///< corners without a normal share vertices by their position and uv, not by index
+  bool apart = false;  ///< faces under different g or usemtl share no computed normals
+  int group = -1;      ///< the faces of one of these groups alone, counted from 0
+  Mat4 to_world{1};    ///< applied before normals are made, which a mirror or uneven scale would change
 };
 
 // All readers: a file without normals gets smooth ones (angle-weighted means over the faces at a vertex, Thürmer and
@@ -40,8 +45,9 @@ struct MeshOptions {
 // ones are right. Triangles without area stay. Throws Error that names the file and line, vertex or face: file
 // unreadable, malformed or truncated, index out of range, position, uv or colour not finite.
 
-/// Wavefront OBJ, the whole file as one mesh: objects, groups, lines and curves are passed over. Vertices
-/// with the same v, vt and vn index are shared. Faces of fewer than three corners have no area and are left out.
+/// Wavefront OBJ, the whole file as one mesh: objects, groups (but see above), lines and curves are passed over.
+/// Vertices with the same v, vt and vn index are shared. Faces of fewer than three corners have no area and are left
+/// out.
 Mesh read_obj(const std::string& path, const MeshOptions& options);
 /// Stanford PLY 1.0, ascii or binary of either byte order. Integer colours are scaled to [0, 1].
 Mesh read_ply(const std::string& path, const MeshOptions& options);

@@ -105,14 +105,11 @@ MtlMap read_map(Cursor& in, std::string_view keyword) {
   return map;
 }
 
-// d, with -halo before its number or not; Tr is what is left of it, where d does not say more.
-void read_opacity(Cursor& in, std::string_view keyword, MtlMaterial& m) {
+// d, with -halo before its number or not.
+float read_opacity(Cursor& in, std::string_view keyword) {
   in.skip_blanks();
   if (in.token() == "-halo") take_token(in);
-  const float x = float(number(in, keyword, 0, 1));
-  if (keyword == "Tr" && m.has_opacity) return;
-  m.has_opacity = keyword == "d";
-  m.opacity = keyword == "d" ? x : 1 - x;
+  return float(number(in, keyword, 0, 1));
 }
 
 // Exporters write them with what changes nothing: no light of its own, a filter without a colour.
@@ -127,14 +124,15 @@ bool read_statement(Cursor& in, std::string_view keyword, MtlMaterial& m) {
   if (keyword == "Kd") return read_colour(in, keyword, m.diffuse);
   if (keyword == "Ks") return m.has_specular = read_colour(in, keyword, m.specular);
   if (keyword == "Ke" || keyword == "Tf") return changes_nothing(in, keyword);
+  if (keyword == "Tr") return number(in, keyword, 0, 1) == 0;  // to some exporters 1 is opaque, to others clear
   if (keyword == "Ns")
     m.exponent = float(std::max(number(in, keyword, -1e6, 1e6), 0.0));  // Blender has written -1.96 for none
   else if (keyword == "Ni")
     m.ior = float(number(in, keyword, 0, 1e3));
   else if (keyword == "illum")
     m.illum = int(number(in, keyword, 0, 1e3));
-  else if (keyword == "d" || keyword == "Tr")
-    read_opacity(in, keyword, m);
+  else if (keyword == "d")
+    m.opacity = read_opacity(in, keyword);
   else if (keyword == "map_Kd")
     m.map_diffuse = read_map(in, keyword);
   else if (keyword == "map_Ks")

@@ -22,13 +22,12 @@ struct MtlMap {
 
 struct MtlMaterial {
   std::string name;
-  Rgb diffuse{0.5f}, specular{0};  ///< Kd, Ks: not negative, but maybe above 1
-  bool has_specular = false;       ///< whether Ks is given
-  float exponent = 0;              ///< Ns
-  float ior = 1.5f;                ///< Ni
-  float opacity = 1;               ///< d, or 1 - Tr where there is no d
-  bool has_opacity = false;        ///< whether d is given
-  int illum = 2;
+  Rgb diffuse{0}, specular{0};  ///< Kd, Ks: not negative, but maybe above 1; as they stand
+  bool has_specular = false;    ///< whether Ks is given
+  float exponent = 0;           ///< Ns
+  float ior = 0;                ///< Ni; 0 where it is not given
+  float opacity = 1;            ///< d
+  int illum = 0;
   MtlMap map_diffuse, map_specular, map_opacity, map_bump;
 };
 

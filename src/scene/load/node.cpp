@@ -16,7 +16,33 @@ namespace ajar {
 namespace {
 namespace fs = std::filesystem;
 constexpr size_t max_text = size_t(1) << 30;  // far beyond any real scene
+
+bool same_but_for_case(std::string_view a, std::string_view b) {
+  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](char x, char y) { return lower(x) == lower(y); });
+}
+
+// The file whose name differs in capitals alone, as it is spelt from the folder on; empty if there is none.
+fs::path other_case(const fs::path& folder, const fs::path& name) {
+  fs::path spelt;
+  for (const fs::path& part : name) {
+    std::error_code error;
+    fs::path found = fs::exists(folder / spelt / part, error) ? part : fs::path();
+    for (fs::directory_iterator it(folder / spelt, error), end; !error && found.empty() && it != end;
+         it.increment(error))
+      if (same_but_for_case(it->path().filename().string(), part.string())) found = it->path().filename();
+    if (found.empty()) return {};
+    spelt /= found;
+  }
+  std::error_code ignored;
+  return fs::is_regular_file(folder / spelt, ignored) ? spelt : fs::path();
+}
 }  // namespace
+
+std::string pointer_problem(std::string_view head) {
+  if (!head.starts_with("version https://git-lfs")) return {};
+  return ": is a pointer of Git LFS, not the file itself; fetch it with \"git lfs pull\"";
+}
 
 std::string snake_case(const std::string& name) {
   std::string out;
@@ -37,7 +63,9 @@ std::string read_text(const std::string& path) {
   if (fs::file_size(path, error) > max_text) throw Error(fmt::format("{}: is larger than 1 GB", path));
   std::ifstream in(path, std::ios::binary);
   if (!in) throw Error(fmt::format("{}: cannot be read: {}", path, std::strerror(errno)));
-  return std::string(std::istreambuf_iterator<char>(in), {});
+  std::string text(std::istreambuf_iterator<char>(in), {});
+  if (const std::string problem = pointer_problem(text); !problem.empty()) throw Error(path + problem);
+  return text;
 }
 
 std::string one_line(std::string text) {
@@ -63,6 +91,19 @@ std::string place(const Document& document, const Node& node) {
   if (!node.named.empty()) element += fmt::format(" name=\"{}\"", shortened(node.named));
   if (!node.id.empty()) element += fmt::format(" id=\"{}\"", shortened(node.id));
   return fmt::format("{}:{}: {}>", document.files[node.file], node.line, element);
+}
+
+std::string missing_file(const Document& document, const Node& node, const std::string& name) {
+  const std::string said =
+      fmt::format("there is no file \"{}\" in {}", name.substr(0, 200), fmt::join(document.folders, " or "));
+  std::vector<std::string> folders = document.folders;
+  folders.push_back(fs::path(document.files[node.file]).parent_path().string());
+  std::string slashes = name.find('\0') == name.npos && name.size() <= 4096 ? name : "";
+  std::replace(slashes.begin(), slashes.end(), '\\', '/');
+  for (const std::string& folder : folders)
+    if (const fs::path other = other_case(folder, slashes); !other.empty())
+      return fmt::format("{}, but \"{}\"; correct its capitals", said, other.string());
+  return said + "; correct the name, or add its folder with <path value=\"...\"/>";
 }
 
 std::string find_file(const Document& document, const Node& node, const std::string& name) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -47,6 +48,10 @@ std::string shortened(const std::string& text);
 const std::string* attribute(const Node& node, const char* name);
 /// "scene.xml:41: <bsdf type="foo">", the beginning of every message about an element.
 std::string place(const Document& document, const Node& node);
+/// What is wrong with a file that begins with this text where it stands for another one; empty where it does not.
+std::string pointer_problem(std::string_view head);
+/// What to say where find_file finds nothing.
+std::string missing_file(const Document& document, const Node& node, const std::string& name);
 /// The regular file that a name means: as it stands, in the document's folders, with / for \, or beside the file that
 /// holds the element; or the first that may not be looked at. Empty if there is none.
 std::string find_file(const Document& document, const Node& node, const std::string& name);

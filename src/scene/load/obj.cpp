@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <unordered_map>
 
@@ -134,19 +135,26 @@ std::vector<bool> taken_materials(const ObjFile& in, const MeshOptions& options)
   return taken;
 }
 
-Mesh join_corners(const ObjFile& in, const std::vector<bool>& taken) {
+// What a corner shares its vertex by.
+Corner key_of(const ObjFile& in, const Corner& c) {
+  if (in.same_v.empty() || c.vn != none) return c;
+  return {in.same_v[c.v], c.vt == none ? none : in.same_vt[c.vt], none};
+}
+
+Mesh join_corners(const ObjFile& in, const std::vector<bool>& taken, std::pair<size_t, size_t> faces) {
   Mesh mesh;
   VertexTable table;
   std::vector<uint32_t> polygon;
-  if (std::find(taken.begin(), taken.end(), false) == taken.end()) mesh.triangles.reserve(in.corners.size() / 2);
-  for (size_t f = 0; f < in.faces.size(); ++f) {
+  if (faces.second - faces.first == in.faces.size() && std::find(taken.begin(), taken.end(), false) == taken.end())
+    mesh.triangles.reserve(in.corners.size() / 2);
+  for (size_t f = faces.first; f < faces.second; ++f) {
     if (!taken[in.faces[f].material]) continue;
     const size_t end = f + 1 < in.faces.size() ? in.faces[f + 1].first : in.corners.size();
     polygon.clear();
     for (size_t i = in.faces[f].first; i < end; ++i) {
       const Corner& c = in.corners[i];
       check_range(in, in.faces[f], c);
-      polygon.push_back(table.find(c));
+      polygon.push_back(table.find(key_of(in, c)));
       if (table.keys.size() > mesh.positions.size()) mesh.positions.push_back(in.v[c.v]);
     }
     add_polygon(mesh, polygon);
@@ -164,7 +172,74 @@ Mesh join_corners(const ObjFile& in, const std::vector<bool>& taken) {
   return mesh;
 }
 
+// For each value the first that is equal to it.
+template <class V>
+std::vector<uint32_t> firsts_of(const std::vector<V>& values) {
+  size_t size = 64;
+  while (size < 2 * values.size()) size *= 2;
+  std::vector<uint32_t> slots(size, none), firsts;
+  firsts.reserve(values.size());
+  for (uint32_t i = 0; i < values.size(); ++i) {
+    const V v = values[i] + 0.0f;  // -0 is 0
+    size_t at = hash(uint64_t(std::bit_cast<uint32_t>(v[0])) << 32 | std::bit_cast<uint32_t>(v[1]),
+                     std::bit_cast<uint32_t>(v[V::length() - 1])) &
+                (size - 1);
+    while (slots[at] != none && values[slots[at]] != v) at = (at + 1) & (size - 1);
+    if (slots[at] == none) slots[at] = i;
+    firsts.push_back(slots[at]);
+  }
+  return firsts;
+}
+
+bool lacks_normals(const ObjFile& in) {
+  return std::any_of(in.corners.begin(), in.corners.end(), [](const Corner& c) { return c.vn == none; });
+}
+
+bool computes_normals(const ObjFile& in, const MeshOptions& options) {
+  return !options.face_normals && (options.max_smooth_angle >= 0 || lacks_normals(in));
+}
+
+void append(Mesh& to, const Mesh& mesh) {
+  const uint32_t before = uint32_t(to.positions.size());
+  const auto add = [&](auto& all, const auto& some, size_t n) {
+    if (all.empty() && some.empty()) return;
+    all.resize(before);  // those before, or these, may have none
+    all.insert(all.end(), some.begin(), some.end());
+    all.resize(before + n);
+  };
+  const size_t n = mesh.positions.size();
+  add(to.normals, mesh.normals, n), add(to.uvs, mesh.uvs, n), add(to.colors, mesh.colors, n);
+  to.positions.insert(to.positions.end(), mesh.positions.begin(), mesh.positions.end());
+  for (const glm::uvec3& t : mesh.triangles) to.triangles.push_back(t + before);
+}
+
+// One mesh of groups whose normals are computed by themselves.
+Mesh join_groups(const ObjFile& file, const std::vector<bool>& taken, const MeshOptions& options) {
+  Mesh all;
+  for (size_t g = 0; g < file.groups.size(); ++g) {
+    if (!taken[file.faces[file.groups[g]].material]) continue;
+    Mesh mesh = join_corners(file, taken, faces_of(file, int(g)));
+    complete(mesh, options, file.name);
+    append(all, mesh);
+  }
+  return all;
+}
+
 }  // namespace
+
+void weld(ObjFile& file) {
+  if (!file.colors.empty() || !lacks_normals(file)) return;  // equal places may differ in colour
+  file.same_v = firsts_of(file.v), file.same_vt = firsts_of(file.vt);
+}
+
+std::pair<size_t, size_t> faces_of(const ObjFile& file, int group) {
+  if (group < 0) return {0, file.faces.size()};
+  const size_t g = size_t(group);
+  if (g >= file.groups.size())
+    throw Error(fmt::format("{}: shapeIndex {}: the file has {} groups of faces, counted from 0", file.name, g,
+                            file.groups.size()));
+  return {file.groups[g], g + 1 < file.groups.size() ? file.groups[g + 1] : file.faces.size()};
+}
 
 ObjFile scan_obj(std::string_view text, const std::string& name) {
   ObjFile out;
@@ -172,6 +247,7 @@ ObjFile scan_obj(std::string_view text, const std::string& name) {
   out.materials.emplace_back();
   std::unordered_map<std::string, uint32_t> known{{"", 0}};
   uint32_t material = 0;
+  bool begins = true;  // another group, with the next face
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   out.v.reserve(text.size() / 128), out.corners.reserve(text.size() / 32);
   Cursor in{text.data(), text.data() + text.size(), name};
@@ -184,24 +260,32 @@ ObjFile scan_obj(std::string_view text, const std::string& name) {
       read_texture_vertex(in, out);
     else if (keyword == "vn")
       read_normal(in, out);
-    else if (keyword == "f")
+    else if (keyword == "f") {
+      if (std::exchange(begins, false)) out.groups.push_back(out.faces.size());
       read_face(in, out, material);
+    } else if (keyword == "g")
+      begins = true;
     else if (keyword == "mtllib")
       out.libraries.emplace_back(read_name(in));
     else if (keyword == "usemtl")
-      material = name_material(out, known, std::string(read_name(in)));
+      begins = true, material = name_material(out, known, std::string(read_name(in)));
   }
   return out;
 }
 
 Mesh join(const ObjFile& file, const MeshOptions& options) {
-  Mesh mesh = join_corners(file, taken_materials(file, options));
+  const std::vector<bool> taken = taken_materials(file, options);
+  if (options.apart && options.group < 0 && file.groups.size() > 1 && computes_normals(file, options))
+    return join_groups(file, taken, options);
+  Mesh mesh = join_corners(file, taken, faces_of(file, options.group));
   complete(mesh, options, file.name);
   return mesh;
 }
 
 Mesh parse_obj(std::string_view text, const std::string& name, const MeshOptions& options) {
-  return join(scan_obj(text, name), options);
+  ObjFile file = scan_obj(text, name);
+  if (options.weld) weld(file);
+  return join(file, options);
 }
 
 Mesh read_obj(const std::string& path, const MeshOptions& options) {

@@ -24,9 +24,9 @@ std::string lower(std::string s) {
 
 // Elements that plugins may have inside.
 bool is_parameter(const Node& node) {
-  static constexpr const char* tags[] = {"float",    "integer", "string", "boolean",   "rgb",       "srgb",
-                                         "spectrum", "point",   "vector", "transform", "blackbody", "texture",
-                                         "ref",      "medium",  "bsdf",   "emitter",   "volume",    "phase"};
+  static constexpr const char* tags[] = {"float", "integer", "string",    "boolean",   "rgb",      "srgb", "spectrum",
+                                         "point", "vector",  "transform", "blackbody", "texture",  "ref",  "medium",
+                                         "bsdf",  "emitter", "volume",    "phase",     "animation"};
   return std::find(std::begin(tags), std::end(tags), node.tag) != std::end(tags);
 }
 
@@ -211,11 +211,8 @@ std::string file(Params& params, const char* name) {
   if (node == nullptr) fail(params.loader, params.node, fmt::format("needs <string name=\"{}\" value=\"...\"/>", name));
   const std::string& value = value_of(params.loader, *node);
   const std::string path = find_file(params.loader.document, *node, value);
-  if (path.empty())
-    fail(params.loader, *node,
-         fmt::format("there is no file \"{}\" in {}; correct the name, or add its folder with <path value=\"...\"/>",
-                     value.substr(0, 200), fmt::join(params.loader.document.folders, " or ")));
-  count_file(params.loader, path);
+  if (path.empty()) fail(params.loader, *node, missing_file(params.loader.document, *node, value));
+  count_file(params.loader, *node, path);
   return path;
 }
 

@@ -1,5 +1,7 @@
 #include "parts.h"
 
+#include <algorithm>
+
 namespace ajar {
 namespace {
 
@@ -32,11 +34,19 @@ std::vector<Part> parts_by_name(Params& p) {
   return with_rest(p, std::move(parts), rest);
 }
 
+// In version 0.x one bsdf is for the faces of its name too, where there are any.
+bool goes_by_name(Params& p) {
+  return p.loader.document.old && std::any_of(p.node.children.begin(), p.node.children.end(), [&](const Node& child) {
+           return !child.named.empty() && follow(p.loader, child).tag == "bsdf" && has_material(p, child.named);
+         });
+}
+
 }  // namespace
 
 std::vector<Part> parts_of(Params& p) {
   const std::vector<const Node*> bsdfs = nested(p, "bsdf");
-  if (bsdfs.size() > 1 && p.node.type == "obj") return parts_by_name(p);
+  const bool several = bsdfs.size() > 1;
+  if (p.node.type == "obj" && (several || (!bsdfs.empty() && goes_by_name(p)))) return parts_by_name(p);
   if (bsdfs.size() > 1) fail(p.loader, p.node, "has more than one bsdf; keep one of them");
   return with_rest(p, {}, bsdfs.empty() ? nullptr : bsdfs.front());
 }

@@ -22,8 +22,12 @@ std::vector<Part> parts_of(Params& p);
 /// Adds a part for each material that the libraries of an obj (mtllib) have, some of its faces and no part yet.
 void add_library_parts(Params& p, std::vector<Part>& parts);
 
-/// The file, read once for all its parts. Throws Error as read_obj does.
+/// The file, read once for all its parts; welded in version 0.x. Throws Error as read_obj does.
 const ObjFile& open_obj(Loader& loader, const std::string& path);
+/// shapeIndex of version 0.x: the group of faces that an obj is; -1 for all.
+int obj_group(Params& p);
+/// Whether faces of an obj come under this usemtl.
+bool has_material(Params& p, const std::string& name);
 
 /// The material of a part: its bsdf, or what shapes without one have.
 uint32_t material_of(Params& p, const Part& part, bool emits);

@@ -70,8 +70,9 @@ struct PlyGroup {
 
 /// Reads up to the line after end_header, where p is then. Throws Error with file and line.
 PlyHeader read_ply_header(const char*& p, const char* end, const std::string& file);
-/// Mitsuba's convention: r g b (or red green blue) is "color"; NAME_x y z, NAME_0 1 2 and NAME_1 2 3 side by side are
-/// NAME, NAME_r g b is NAME_color; a fourth part is passed over, and the first alone is a single number.
+/// Mitsuba's convention: r g b (or red green blue, each after diffuse_ or not) is "color"; NAME_x y z, NAME_0 1 2 and
+/// NAME_1 2 3 side by side are NAME, NAME_r g b is NAME_color; a fourth part is passed over, and the first alone is a
+/// single number.
 std::vector<PlyGroup> ply_groups(const PlyElement& e, const std::string& prefix);
 
 }  // namespace ajar

@@ -137,7 +137,8 @@ PlyHeader read_ply_header(const char*& p, const char* end, const std::string& fi
 
 std::vector<PlyGroup> ply_groups(const PlyElement& e, const std::string& prefix) {
   std::vector<PlyGroup> groups;
-  for (const auto& names : {std::array{"r", "g", "b"}, {"red", "green", "blue"}}) {
+  for (const auto& names :
+       {std::array{"r", "g", "b"}, {"red", "green", "blue"}, {"diffuse_red", "diffuse_green", "diffuse_blue"}}) {
     const auto r = index_of(e, names[0]), g = index_of(e, names[1]), b = index_of(e, names[2]);
     if (r && g && b && groups.empty()) groups.push_back({prefix + "color", {*r, *g, *b}, true});
   }

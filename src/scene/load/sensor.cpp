@@ -52,7 +52,7 @@ void read_film(Loader& loader, const Node& node, Camera& camera) {
   Params p(loader, node);
   static constexpr const char* known[] = {"hdrfilm", "ldrfilm", "mfilm", "tiledhdrfilm"};
   if (std::find(std::begin(known), std::end(known), node.type) == std::end(known))
-    unsupported(loader, node, fmt::format("unknown film; supported: {}", fmt::join(known, ", ")), "read as hdrfilm");
+    note(loader, node, fmt::format("unknown film; supported: {}: read as hdrfilm", fmt::join(known, ", ")));
   camera.width = integer(p, "width", 768, 1, max_film);
   camera.height = integer(p, "height", 576, 1, max_film);
   camera.crop_x = integer(p, "crop_offset_x", 0, 0, camera.width - 1);
@@ -155,6 +155,18 @@ void read_sampler(Loader& loader, const Node& node) {
   note_unused(p, {"id", "seed", "scramble", "dimension", "jitter"});
 }
 
+// 0 shows nothing at all: Ajar has no such images. What another renderer's integrator means by it does not matter.
+void read_depth(Params& p, bool known) {
+  const Node* node = find(p, {"max_depth"});
+  const std::string* value = node ? attribute(*node, "value") : nullptr;
+  if (node == nullptr) return;
+  if (value == nullptr || to_number(*value) != 0.0)
+    p.loader.scene.hints.max_depth = hint(p, "max_depth", -1, true);
+  else if (known)
+    unsupported(p.loader, *node, "0 shows nothing; it should be 1 (lights alone) or more, or -1 for no limit",
+                "no limit");
+}
+
 // Mitsuba 3's film for several sensors side by side.
 void load_batch(Loader& loader, const Node& node) {
   Params p(loader, node);
@@ -236,16 +248,15 @@ void load_integrator(Loader& loader, const Node& node) {
                                     {"direct", "path"}};
   Hints& hints = loader.scene.hints;
   Params p(loader, node);
-  const int depth = hint(p, "max_depth", -1, true);
-  if (has(p, "max_depth")) hints.max_depth = depth;
+  std::string type = node.type;
+  std::replace(type.begin(), type.end(), '_', '-');
+  const auto name = std::find_if(std::begin(names), std::end(names), [&](const Alias& a) { return type == a.theirs; });
+  read_depth(p, name != std::end(names));
   if (node.type == "direct") hints.max_depth = 2;  // the light that reaches what the camera sees, and no further
   if (boolean(p, "hide_emitters", false)) note(loader, node, "hide_emitters is not supported: lights stay visible");
   const Open open(loader, node);
   if (const std::vector<const Node*> inner = nested(p, "integrator"); !inner.empty())
     return load_integrator(loader, *inner.front());  // aov, moment and others measure what another one renders
-  std::string type = node.type;
-  std::replace(type.begin(), type.end(), '_', '-');
-  const auto name = std::find_if(std::begin(names), std::end(names), [&](const Alias& a) { return type == a.theirs; });
   if (name == std::end(names)) {
     hints.integrator = node.written;
     return note(loader, node, "Ajar has no integrator of this name: its own default is used");

@@ -145,8 +145,9 @@ void file_mesh(Params& p, Shape& shape, const std::string& key, MeshOptions opti
   options.flip_v = boolean(p, "flip_tex_coords", options.flip_v);
   Mesh mesh;
   try {
-    const std::string exact = fmt::format("{}|{}{}{}|{}", key, options.face_normals, options.flip_normals,
-                                          options.flip_v, options.max_smooth_angle);
+    const std::string exact =
+        fmt::format("{}|{}{}{}{}{}{}|{}|{}", key, options.face_normals, options.flip_normals, options.flip_v,
+                    options.srgb, options.weld, options.apart, options.group, options.max_smooth_angle);
     const int left = --p.loader.mesh_uses[key];
     if (take_placed(p.loader, exact, m, mesh)) {
       shape.mesh = add_mesh(p, std::move(mesh));
@@ -157,6 +158,7 @@ void file_mesh(Params& p, Shape& shape, const std::string& key, MeshOptions opti
     if ((left > 0 || known) && is_similarity(m) && determinant(m) > 0) {
       mesh = known ? left > 0 ? kept->second : std::move(kept->second) : read(options);
       if (left > 0 && !known) p.loader.meshes.emplace(exact, mesh);
+      if (left <= 0 && known) p.loader.meshes.erase(kept);
       transform(mesh, Mat4(m));
     } else {
       options.to_world = Mat4(m);
@@ -174,15 +176,31 @@ void obj(Params& p, Shape& shape, const Part& part) {
   MeshOptions options;
   options.flip_v = true;
   options.takes_material = part.takes;
-  file_mesh(p, shape, part.takes ? path + "#" + part.name : path, options, [&](const MeshOptions& o) {
+  options.weld = p.loader.document.old;
+  options.apart = p.loader.document.old && !boolean(p, "collapse", false);
+  options.group = obj_group(p);
+  const std::string key = options.group < 0 ? path : fmt::format("{}#{}", path, options.group);
+  file_mesh(p, shape, part.takes ? key + "#" + part.name : key, options, [&](const MeshOptions& o) {
     const bool open = part.takes || (p.loader.obj && p.loader.obj->name == path);
     return open ? join(open_obj(p.loader, path), o) : read_obj(path, o);
   });
 }
 
+// Colours of vertices that are encoded as sRGB, as linear ones.
+void decode(std::vector<Rgb>& colors) {
+  const auto linear = [](float x) { return float(std::min(from_srgb(x), 1e30)); };  // finite
+  for (Rgb& c : colors) c = {linear(c.x), linear(c.y), linear(c.z)};
+}
+
 void ply(Params& p, Shape& shape, const Part&) {
   const std::string path = file(p, "filename");
-  file_mesh(p, shape, path, {}, [&](const MeshOptions& o) { return read_ply(path, o); });
+  MeshOptions options;
+  options.srgb = p.loader.document.old && boolean(p, "srgb", true);
+  file_mesh(p, shape, path, options, [&](const MeshOptions& o) {
+    Mesh mesh = read_ply(path, o);
+    if (o.srgb) decode(mesh.colors);
+    return mesh;
+  });
 }
 
 void serialized(Params& p, Shape& shape, const Part&) {
@@ -199,41 +217,55 @@ struct Entry {
 constexpr Entry entries[] = {{"obj", obj}, {"rectangle", rectangle}, {"sphere", sphere}, {"serialized", serialized},
                              {"ply", ply}, {"cube", cube},           {"disk", disk},     {"cylinder", cylinder}};
 
-// Names of the mesh attributes that a slot shows.
-void list_attributes(const Scene& scene, const Slot& slot, std::set<std::string>& out) {
+// What the textures of a shape need of its mesh.
+struct Shown {
+  std::set<std::string> attributes;
+  std::set<uint32_t> limits;  // textures of TextureKind::limit
+};
+
+void list_shown(const Scene& scene, const Slot& slot, Shown& out) {
   if (slot.texture == none) return;
   const Texture& t = scene.textures[slot.texture];
-  if (t.kind == TextureKind::mesh_attribute) out.insert(t.attribute);
-  if (t.kind == TextureKind::checkerboard || t.kind == TextureKind::grid || t.kind == TextureKind::scale)
-    for (const Slot* inner : {&t.color0, &t.color1}) list_attributes(scene, *inner, out);
+  if (t.kind == TextureKind::mesh_attribute) out.attributes.insert(t.attribute);
+  if (t.kind == TextureKind::limit) out.limits.insert(slot.texture);
+  if (t.kind != TextureKind::bitmap && t.kind != TextureKind::mesh_attribute)
+    for (const Slot* inner : {&t.color0, &t.color1}) list_shown(scene, *inner, out);
 }
-void list_attributes(const Scene& scene, uint32_t material, std::set<std::string>& out) {
+void list_shown(const Scene& scene, uint32_t material, Shown& out) {
   const Material& m = scene.materials[material];
   for (const Slot* slot : {&m.reflectance, &m.specular, &m.transmittance, &m.alpha_u, &m.alpha_v, &m.exponent,
                            &m.weight, &m.map, &m.roughness, &m.anisotropic, &m.metallic, &m.spec_trans, &m.spec_tint,
                            &m.sheen, &m.sheen_tint, &m.clearcoat, &m.clearcoat_gloss, &m.flatness})
-    list_attributes(scene, *slot, out);
+    list_shown(scene, *slot, out);
   for (const uint32_t nested : m.nested)
-    if (nested != none) list_attributes(scene, nested, out);
+    if (nested != none) list_shown(scene, nested, out);
+}
+
+void note_limits(Loader& loader, const Node& node, const Shown& shown, const Mesh& mesh) {
+  for (const uint32_t limit : shown.limits)
+    if (max_component(maximum(loader.scene, loader.scene.textures[limit].color0, &mesh)) > 1)
+      note(loader, node, "its mesh attributes make reflectances above 1: there they become 1");
 }
 
 // What the textures of a shape show has to be in its mesh.
 void check_attributes(Loader& loader, const Node& node, const Shape& shape) {
   const Scene& scene = loader.scene;
-  std::set<std::string> wanted, there;
-  list_attributes(scene, shape.material, wanted);
-  if (shape.light != none) list_attributes(scene, scene.lights[shape.light].radiance, wanted);
-  if (wanted.empty()) return;
+  Shown shown;
+  std::set<std::string> there;
+  list_shown(scene, shape.material, shown);
+  if (shape.light != none) list_shown(scene, scene.lights[shape.light].radiance, shown);
+  if (shown.attributes.empty()) return;
   if (shape.kind == ShapeKind::mesh) {
     const Mesh& mesh = scene.meshes[shape.mesh];
     if (!mesh.colors.empty()) there.insert("vertex_color");
     for (const Attribute& a : mesh.attributes) {
       there.insert(a.name);
-      if (wanted.contains(a.name) && !std::all_of(a.values.begin(), a.values.end(), is_finite))
+      if (shown.attributes.contains(a.name) && !std::all_of(a.values.begin(), a.values.end(), is_finite))
         fail(loader, node, fmt::format("the mesh attribute \"{}\" has values that are not finite", a.name));
     }
+    note_limits(loader, node, shown, mesh);
   }
-  for (const std::string& name : wanted)
+  for (const std::string& name : shown.attributes)
     if (!there.contains(name))
       unsupported(loader, node,
                   fmt::format("its textures show the mesh attribute \"{}\", which it lacks; it has {}",
@@ -249,6 +281,16 @@ void refuse_media(Params& p) {
     unsupported(p.loader, *inside, "subsurface scattering is not supported", "left out");
 }
 
+// What stands in a shape by a misunderstanding.
+void note_strays(Params& p, const char* tag, const char* text) {
+  for (size_t i = 0; i < p.node.children.size(); ++i) {
+    const Node& child = p.node.children[i];
+    if (p.used[i] || follow(p.loader, child).tag != tag) continue;
+    p.used[i] = true;
+    note(p.loader, child, text);
+  }
+}
+
 void load_instance(Loader& loader, const Node& node, uint32_t group) {
   if (group != none)
     fail(loader, node, "an instance inside a shapegroup is not supported; put the shapes that it shows there");
@@ -262,6 +304,8 @@ void load_instance(Loader& loader, const Node& node, uint32_t group) {
   instance.to_world = Mat4(m);
   instance.to_object = Mat4(glm::inverse(m));
   loader.scene.instances.push_back(instance);
+  note_strays(p, "bsdf", "an instance shows its shapegroup as it is: not used; give it to the shapes of the group");
+  note_strays(p, "emitter", "an instance shows its shapegroup as it is: not used; a light stands beside the group");
   finish(p, {"id"});
 }
 
@@ -339,6 +383,7 @@ void load_shape(Loader& loader, const Node& node, uint32_t group) {
   if (entry == std::end(entries))
     return unsupported(loader, node, fmt::format("unknown shape; {}", supported), "left out");
   for (const Part& part : parts_of(p)) load_part(p, entry->read, part, group);
+  note_strays(p, "texture", "a texture is no bsdf: not used; put it inside one, <bsdf type=\"diffuse\">");
   finish(p, {"id", "velocity", "collapse"});
 }
 

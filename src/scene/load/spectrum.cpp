@@ -10,8 +10,6 @@
 namespace ajar {
 namespace {
 
-double from_srgb(double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); }  // IEC 61966-2-1
-
 Rgb checked(Loader& loader, const Node& node, Rgb c, Colour kind) {
   if (!is_finite(c)) fail(loader, node, "is beyond the range of numbers; take smaller ones");
   const bool is_number = node.tag == "float" || node.tag == "integer" || node.tag == "string";
@@ -79,8 +77,8 @@ List pairs_of(const Loader& loader, const Node& node, std::string value) {
 
 List pairs_of_file(Loader& loader, const Node& node, const std::string& name) {
   const std::string path = find_file(loader.document, node, name);
-  if (path.empty()) fail(loader, node, fmt::format("there is no file \"{}\"; correct the name", name.substr(0, 200)));
-  count_file(loader, path);
+  if (path.empty()) fail(loader, node, missing_file(loader.document, node, name));
+  count_file(loader, node, path);
   List list;
   std::istringstream lines(read_text(path));
   int number = 0;
@@ -172,6 +170,8 @@ Rgb plugin_spectrum(Loader& loader, const Node& node, Colour kind) {
 }
 
 }  // namespace
+
+double from_srgb(double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); }
 
 Rgb colour_of(Loader& loader, const Node& node, Colour kind) {
   if (node.tag == "spectrum" || node.tag == "texture")

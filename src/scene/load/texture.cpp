@@ -63,7 +63,9 @@ Texture grid(Params& p, Colour kind) {
   return t;
 }
 
+// What is scaled has no limit of its own: the product has.
 Texture scaled(Params& p, Colour kind) {
+  if (kind == Colour::reflectance) kind = Colour::ratio;
   Texture t;
   t.kind = TextureKind::scale;
   t.color1 = slot(p, {"scale"}, 1.0f, Colour::ratio);
@@ -106,7 +108,7 @@ Channel channel_of(Params& p) {
   return word == "a" ? Channel::alpha : Channel::color;
 }
 
-Texture bitmap(Params& p) {
+Texture bitmap(Params& p, Colour kind) {
   Texture t;
   t.flip_v = false;  // v = 0 is the top row, as in Mitsuba; obj files are turned when they are read
   const std::string path = file(p, "filename");
@@ -116,10 +118,26 @@ Texture bitmap(Params& p) {
   t.wrap_v = wrap_of(p, "wrap_mode_v", t.wrap_v);
   const bool raw = boolean(p, "raw", false);
   t.image = load_image_file(p.loader, p.node, path, raw, number(p, "gamma", 0));
+  t.image = limited_image(p.loader, p.node, t.image, kind);
   t.channel = channel_of(p);
   t.to_uv = uv_map(p);
   finish(p, {"cache", "max_anisotropy", "format", "accel", "id"});
   return t;
+}
+
+// The texture, or one around it that keeps it from 0 to 1 where it may be more. What mesh attributes have is known to
+// the shapes that show them.
+uint32_t add_limited(Loader& loader, const Node& node, Texture&& texture) {
+  Slot inner;
+  inner.texture = add_texture(loader, node, std::move(texture));
+  const float most = max_component(maximum(loader.scene, inner));
+  if (most <= 1) return inner.texture;
+  if (std::isfinite(most))
+    note(loader, node, "reflectances above 1 would make light from nothing: where it is more, it becomes 1");
+  Texture limit;
+  limit.kind = TextureKind::limit;
+  limit.color0 = inner;
+  return add_texture(loader, node, std::move(limit));
 }
 
 const Image* find_value(const std::map<std::string, Image>& images, const std::string& key) {
@@ -127,24 +145,52 @@ const Image* find_value(const std::map<std::string, Image>& images, const std::s
   return found == images.end() ? nullptr : &found->second;
 }
 
+void note_mended(Loader& loader, const Node& node, const Image& image) {
+  const auto say = [&](const char* what, size_t count) {
+    if (count > 0)
+      note(loader, node, fmt::format("{}: {} ({} of {}) were set to 0", image.name, what, count, image.floats.size()));
+  };
+  say("negative numbers", image.negative);
+  say("numbers that are not finite", image.not_finite);
+}
+
 }  // namespace
 
 uint32_t load_image_file(Loader& loader, const Node& node, const std::string& path, bool raw, double gamma) {
   if (gamma > 0 && std::abs(gamma - 1) < 1e-6) raw = true;
   if (gamma > 100) fail(loader, node, fmt::format("gamma {} should be from 0 to 100", gamma));
-  const std::string key = fmt::format("{}|{}|{}", raw, raw ? 0 : std::max(gamma, 0.0), path);
+  const std::string key = fmt::format("{}|{}|{}|{}", raw, loader.lenient, raw ? 0 : std::max(gamma, 0.0), path);
   const auto found = loader.images.find(key);
   if (found != loader.images.end()) return found->second;
   const uint32_t index = uint32_t(loader.scene.images.size());
   const Image* kept = loader.cache ? find_value(loader.cache->images, key) : nullptr;
   try {
-    loader.scene.images.push_back(kept ? *kept : load_image(path, raw, raw ? 0.0f : float(std::max(gamma, 0.0))));
+    loader.scene.images.push_back(
+        kept ? *kept : load_image(path, raw, raw ? 0.0f : float(std::max(gamma, 0.0)), loader.lenient));
   } catch (const Error& error) {
     fail(loader, node, error.what());
   }
   if (loader.cache && !kept) loader.cache->images.emplace(key, loader.scene.images.back());
   loader.images.emplace(key, index);
+  note_mended(loader, node, loader.scene.images.back());
   return index;
+}
+
+uint32_t limited_image(Loader& loader, const Node& node, uint32_t index, Colour kind) {
+  if (kind == Colour::ratio) return index;
+  const float most = kind == Colour::reflectance ? 1 : infinity;
+  std::vector<Image>& images = loader.scene.images;
+  const std::vector<float>& floats = images[index].floats;
+  if (std::all_of(floats.begin(), floats.end(), [&](float x) { return x >= 0 && x <= most; })) return index;
+  note(loader, node,
+       fmt::format("{}: {}", images[index].name,
+                   most == 1 ? "numbers below 0 or above 1 are no reflectances: they were set to 0 or 1"
+                             : "negative numbers are no light: they were set to 0"));
+  const auto [known, added] = loader.images.emplace(fmt::format("{}|to {}", index, most), uint32_t(images.size()));
+  if (!added) return known->second;
+  images.push_back(Image(images[index]));
+  for (float& x : images.back().floats) x = std::clamp(x, 0.0f, most);
+  return known->second;
 }
 
 bool is_texture(const Node& node) {
@@ -178,7 +224,7 @@ uint32_t load_texture(Loader& loader, const Node& node, Colour kind) {
   Params p(loader, node);
   Texture t;
   if (node.type == "bitmap") {
-    t = bitmap(p);
+    t = bitmap(p, kind);
   } else if (node.type == "checkerboard") {
     t = checkerboard(p, kind);
   } else if (node.type == "gridtexture") {
@@ -191,7 +237,9 @@ uint32_t load_texture(Loader& loader, const Node& node, Colour kind) {
     t.kind = TextureKind::checkerboard;
     t.color0 = t.color1 = Slot(0.5f);
   }
-  const uint32_t index = add_texture(loader, node, std::move(t));
+  const bool may_exceed = t.kind == TextureKind::scale || t.kind == TextureKind::mesh_attribute;
+  const uint32_t index = may_exceed && kind == Colour::reflectance ? add_limited(loader, node, std::move(t))
+                                                                   : add_texture(loader, node, std::move(t));
   loader.textures.emplace(std::pair{&node, kind}, index);
   return index;
 }

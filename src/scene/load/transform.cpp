@@ -68,6 +68,7 @@ DMat4 lookat_of(const Loader& loader, const Node& node) {
 DMat4 rotate_of(const Loader& loader, const Node& node) {
   const std::string* axis_words = attribute(node, "axis");
   const DVec3 axis = axis_words != nullptr ? point_attribute(loader, node, "axis") : vector_of(loader, node, 0);
+  if (attribute(node, "angle") == nullptr) fail(loader, node, "needs angle=\"...\", in degrees");
   const double angle = number_attribute(loader, node, "angle", 0);
   if (glm::dot(axis, axis) > 0) return glm::rotate(DMat4(1), glm::radians(angle), glm::normalize(axis));
   if (angle != 0) fail(loader, node, "needs an axis: x, y, z or value=\"x, y, z\"");

@@ -136,13 +136,18 @@ const std::pair<const std::string, std::string>* parameter_at(const std::map<std
   return found;
 }
 
-// Puts in the value of every $name.
+// Puts in the value of every $name. After \ a dollar is one, but for version 0.x, where that is a folder of Windows.
 std::string substitute(Reader& r, const Source& s, const pugi::xml_node& node, const char* value) {
   std::string out;
   std::string_view rest = value;
   for (size_t dollar; (dollar = rest.find('$')) != rest.npos;) {
-    out += rest.substr(0, dollar);
+    const bool literal = !r.document.old && dollar > 0 && rest[dollar - 1] == '\\';
+    out += rest.substr(0, dollar - (literal ? 1 : 0));
     rest.remove_prefix(dollar + 1);
+    if (literal) {
+      out += '$';
+      continue;
+    }
     const auto* found = parameter_at(r.parameters, rest);
     if (found == nullptr) {
       if (r.looked.insert("").second) look_ahead(r, r.root, 0);
@@ -213,10 +218,7 @@ void read_default(Reader& r, const Source& s, const pugi::xml_node& xml, const N
 void read_include(Reader& r, const Source& s, const pugi::xml_node& xml, const Node& node, Node& into, int depth) {
   const std::string& name = need(r, s, xml, node, "filename");
   const std::string path = find_file(r.document, node, name);
-  if (path.empty())
-    fail(r, s, xml,
-         fmt::format("there is no file \"{}\" in {}; correct the name, or add its folder with <path value=\"...\"/>",
-                     name.substr(0, 200), fmt::join(r.document.folders, " or ")));
+  if (path.empty()) fail(r, s, xml, missing_file(r.document, node, name));
   std::error_code ignored;
   const std::string canonical = fs::weakly_canonical(path, ignored).string();
   if (std::find(r.including.begin(), r.including.end(), canonical) != r.including.end())
@@ -237,6 +239,7 @@ void read_include(Reader& r, const Source& s, const pugi::xml_node& xml, const N
   } else {
     Node child = make_node(r, inner, root);
     read_children(r, inner, root, child, depth + 1);
+    if (!node.named.empty()) child.name = node.name, child.named = node.named;
     into.children.push_back(std::move(child));
   }
   r.including.pop_back();

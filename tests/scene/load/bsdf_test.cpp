@@ -140,6 +140,22 @@ TEST(Bsdf, Phong) {
   EXPECT_TRUE(says(s.notes, "scaled down"));
 }
 
+// By the largest sum that there may be.
+TEST(Bsdf, TwoTexturedColoursAreLimited) {
+  const std::string bright =
+      "<texture name='diffuseReflectance' type='checkerboard'><rgb name='color0' value='0.8'/></texture>";
+  for (const char* type : {"phong", "ward"}) {
+    const Scene s = load_inside(bsdf(type, bright + number("specularReflectance", 0.45)));
+    const Material& m = s.materials[0];
+    EXPECT_RGB(maximum(s, m.reflectance), 0.64, 0.64, 0.64, 1e-6);
+    EXPECT_RGB(m.specular.value, 0.36, 0.36, 0.36, 1e-6);
+    EXPECT_TRUE(says(s.notes, "scaled down")) << type;
+    const Scene dim = load_inside(bsdf(type, bright));
+    EXPECT_RGB(maximum(dim, dim.materials[0].reflectance), 0.8, 0.8, 0.8, 1e-6);
+    EXPECT_FALSE(says(dim.notes, "scaled down")) << type;
+  }
+}
+
 TEST(Bsdf, Principled) {
   Material m = last(bsdf("principled"));
   EXPECT_EQ(m.kind, MaterialKind::principled);
@@ -220,6 +236,8 @@ TEST(Bsdf, BumpAndNormalMaps) {
   EXPECT_NE(last(bsdf("bumpmap", checker + bsdf("diffuse"))).map.texture, none);
   EXPECT_NE(last(bsdf("bumpmap", texture("anything") + bsdf("diffuse"))).map.texture, none);
   EXPECT_SAYS(error_of(bsdf("bumpmap", bsdf("diffuse"))), "needs a nested <texture>");
+  EXPECT_EQ(last(bsdf("bump", checker + bsdf("diffuse")), {}, "0.4.0").kind, MaterialKind::bumpmap);
+  EXPECT_SAYS(error_of(bsdf("bump", checker + bsdf("diffuse"))), "unknown bsdf");
   m = last(bsdf("normalmap", texture("normalmap") + bsdf("diffuse")));
   EXPECT_EQ(m.kind, MaterialKind::normalmap);
   EXPECT_NE(m.map.texture, none);

@@ -47,6 +47,25 @@ TEST(Emitters, Envmap) {
   EXPECT_SAYS(error_of(emitter("envmap", file + "<float name='scale' value='-3'/>")), "negative");
 }
 
+// Maps of bright lights have negative texels after resizing, and worse after mistakes.
+TEST(Emitters, EnvmapWithBadTexels) {
+  const auto file = [](const std::string& path, const std::string& inside = "") {
+    return emitter("envmap", "<string name='filename' value='" + path + "'/>" + inside);
+  };
+  const std::string dark = write_pfm("dark.pfm", {5, 5, 5, -1e-6f, 2, 3});
+  for (const std::string raw : {"", "<boolean name='raw' value='true'/>"}) {
+    const Scene s = load_inside(file(dark, raw));
+    EXPECT_EQ(texel(s.images[s.environments[0].image], 1, 0), Rgb(0, 2, 3)) << raw;
+    EXPECT_TRUE(says(s.notes, raw.empty() ? "dark.pfm: negative numbers (1 of 6) were set to 0" : "are no light"))
+        << raw;
+  }
+  const std::string hole = write_pfm("hole.pfm", {5, 5, 5, std::nanf(""), infinity, 3});
+  EXPECT_SAYS(error_of(file(hole)), "hole.pfm: pixel (1, 0) holds nan; repair the image; with --lenient: 0");
+  const Scene s = load_inside(file(hole), lenient());
+  EXPECT_EQ(texel(s.images[s.environments[0].image], 1, 0), Rgb(0, 0, 3));
+  EXPECT_TRUE(says(s.notes, "hole.pfm: numbers that are not finite (2 of 6) were set to 0"));
+}
+
 TEST(Emitters, Point) {
   const Light l = read("point", "<point name='position' x='1' z='3'/><rgb name='intensity' value='4 5 6'/>");
   EXPECT_EQ(l.kind, LightKind::point);
@@ -225,6 +244,12 @@ TEST(Emitters, ScaleOfSunsky) {
   EXPECT_NEAR(power(s, 0) / power(one, 0), 3, 1e-4);
   EXPECT_NEAR(power(s, 1) / power(one, 1), 2, 1e-4);
   EXPECT_TRUE(says(old(emitter("sky", scaled("stretch", "2"))).notes, "\"stretch\" is not used"));
+}
+
+TEST(Emitters, UnknownOnesInShapes) {
+  EXPECT_SAYS(error_of("<shape type='sphere'>" + emitter("angulararea") + "</shape>"),
+              "unknown emitter; supported: area");
+  EXPECT_SAYS(error_of("<shape type='sphere'>" + emitter("point") + "</shape>"), "only an area light can be inside");
 }
 
 // Behind so much air no blue is left, and less than none of it in sRGB: that must not take the red with it.

@@ -29,6 +29,9 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   options.flip_v = choice & 4;
   if (choice & 8) options.max_smooth_angle = 30;
   if (choice & 16) options.to_world[0][0] = -2;
+  options.weld = choice & 32;
+  options.apart = choice & 64;
+  if (choice & 128) options.group = 1;
   try {
     const std::string bytes(reinterpret_cast<const char*>(data) + 2, size - 2);
     const ajar::Mesh mesh = parse(data[0] % 5, bytes, choice >> 5, options);

@@ -138,6 +138,59 @@ TEST(MeshObj, normals_of_the_file) {
   EXPECT_TRUE(obj(text).normals.empty());  // face_normals
 }
 
+// A floor and a wall with a common edge, the z axis.
+const std::string corner = "v 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nv 0 1 0\nv 0 1 1\n%f 1 2 3 4\n%f 1 5 6 2\n";
+std::string cornered(const std::string& first, const std::string& second) {
+  std::string text = corner;
+  text.replace(text.find('%'), 1, first);
+  return text.replace(text.find('%'), 1, second);
+}
+// Whether computed normals are smooth across the edge.
+bool smooth(const std::string& text, const MeshOptions& options) {
+  const Mesh m = obj(text, options);
+  EXPECT_EQ(m.triangles.size(), 4u);
+  const Vec3 floor = m.normals[m.triangles[0].x], wall = m.normals[m.triangles[2].x];
+  EXPECT_EQ(m.positions[m.triangles[0].x], Vec3(0));
+  EXPECT_EQ(m.positions[m.triangles[2].x], Vec3(0));
+  return floor == wall;
+}
+
+TEST(MeshObj, groups_share_computed_normals_or_not) {
+  const MeshOptions together, apart{.weld = true, .apart = true};
+  const std::string grouped = cornered("g a\n", "g b\n"), used = cornered("", "usemtl b\n");
+  for (const std::string& text : {grouped, used}) {
+    EXPECT_TRUE(smooth(text, together));
+    EXPECT_FALSE(smooth(text, apart));
+    EXPECT_FALSE(smooth(text, {.max_smooth_angle = 120, .apart = true}));
+    EXPECT_TRUE(smooth(text, {.max_smooth_angle = 120}));
+  }
+  EXPECT_TRUE(smooth(cornered("g a\n", ""), apart));
+  EXPECT_EQ(obj(grouped, apart).positions.size(), 8u);
+  // where one has uv and the other none
+  const Mesh m = obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 1 1\nf 1 2 3\ng b\nf 1/1 2/1 3/1\n", apart);
+  EXPECT_EQ(m.uvs, (std::vector<Vec2>{Vec2(0), Vec2(0), Vec2(0), Vec2(1), Vec2(1), Vec2(1)}));
+}
+
+TEST(MeshObj, one_group_alone) {
+  const std::string text = cornered("g nothing yet\ng a\n", "usemtl b\ng c\n");
+  EXPECT_EQ(obj(text, {.group = 1}).positions[1], Vec3(0, 1, 0));
+  EXPECT_EQ(obj(text, {.group = 1}).triangles.size(), 2u);
+  EXPECT_EQ(obj(text, {.group = 0}).positions[3], Vec3(1, 0, 0));
+  EXPECT_EQ(kit::error_of([&] { parse_obj(text, "a.obj", {.group = 2}); }),
+            "a.obj: shapeIndex 2: the file has 2 groups of faces, counted from 0");
+}
+
+TEST(MeshObj, equal_corners_are_one_or_not) {
+  const std::string doubled = corner.substr(0, corner.find('%')) + "v -0 0 0\nv 0 -0 1\nf 1 2 3 4\nf 7 5 6 8\n";
+  EXPECT_FALSE(smooth(doubled, {}));
+  EXPECT_TRUE(smooth(doubled, {.weld = true}));
+  // uv counts, equal normals of the file are as they are
+  EXPECT_EQ(
+      obj(three + three + "vt 0 0\nvt 0 0\nvt 1 0\nf 1/1 2/1 3/1\nf 4/2 5/3 6/3\n", {.weld = true}).positions.size(),
+      5u);
+  EXPECT_EQ(obj(three + three + "vn 0 0 1\nf 1//1 2//1 3//1\nf 4//1 5//1 6//1\n", {.weld = true}).positions.size(), 6u);
+}
+
 TEST(MeshObj, empty_files_are_empty_meshes) {
   EXPECT_TRUE(obj("").triangles.empty());
   EXPECT_TRUE(obj("# nothing", MeshOptions()).positions.empty());

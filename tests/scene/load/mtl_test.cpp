@@ -25,7 +25,7 @@ std::string mtl_error(const std::string& text) {
 }
 
 TEST(Mtl, NumbersAndColours) {
-  const MtlMaterial m = read(" Kd .1 .2 .3 # comment\r\n\tKs 0.5\r\nNs 60\nNi 1.4\nillum 7\nTr 0.25\n");
+  const MtlMaterial m = read(" Kd .1 .2 .3 # comment\r\n\tKs 0.5\r\nNs 60\nNi 1.4\nillum 7\nd 0.75\n");
   EXPECT_EQ(m.name, "m");
   EXPECT_EQ(m.diffuse, Rgb(0.1f, 0.2f, 0.3f));
   EXPECT_EQ(m.specular, Rgb(0.5f));
@@ -34,8 +34,10 @@ TEST(Mtl, NumbersAndColours) {
   EXPECT_EQ(m.ior, 1.4f);
   EXPECT_EQ(m.illum, 7);
   EXPECT_EQ(m.opacity, 0.75f);
-  EXPECT_EQ(read("d 0.5\nTr 0.9").opacity, 0.5f) << "some exporters mean d by Tr: d counts";
-  EXPECT_EQ(read("Tr 0.9\nd 0.5").opacity, 0.5f);
+  EXPECT_EQ(read("Tr 0.9\nd 0.5\nTr 0.9").opacity, 0.5f) << "some exporters mean d by Tr";
+  EXPECT_EQ(read("Tr 0.9").opacity, 1);
+  EXPECT_EQ(read("").illum, 0);
+  EXPECT_EQ(read("").diffuse, Rgb(0));
   EXPECT_EQ(read("d -halo 0.5").opacity, 0.5f);
   EXPECT_EQ(read("Ns -1.960784").exponent, 0);
 }
@@ -56,11 +58,11 @@ TEST(Mtl, Maps) {
 
 TEST(Mtl, WhatIsNotUsedIsListed) {
   const MtlFile file = parse_mtl(
-      "Kd 9\nnewmtl a\nKa 1 1 1\nKe 0 0 0\nTf 0 0 0\nPr 0.5\nfoo\nnewmtl b\nKe 1 0 0\n"
+      "Kd 9\nnewmtl a\nKa 1 1 1\nKe 0 0 0\nTf 0 0 0\nPr 0.5\nfoo\nnewmtl b\nKe 1 0 0\nTr 0\nTr 0.5\n"
       "Kd spectral a.rfl\n",
       "a.mtl");
   EXPECT_EQ(file.materials.size(), 2u);
-  EXPECT_EQ(file.unread, (std::set<std::string>{"Kd", "Ke", "Pr", "foo"}));
+  EXPECT_EQ(file.unread, (std::set<std::string>{"Kd", "Ke", "Pr", "Tr", "foo"}));
 }
 
 TEST(Mtl, DamageIsToldWithItsLine) {
@@ -99,23 +101,26 @@ TEST(Library, MakesPartsOfAnObjWithoutBsdf) {
   const Scene s = load_inside(obj("shelf.obj"), {}, "0.6.0");
   ASSERT_EQ(s.shapes.size(), 6u);
   EXPECT_EQ(material(s, 0).kind, MaterialKind::diffuse) << "no highlight: Ns is 0";
-  EXPECT_RGB(material(s, 0).reflectance.value, 0.8, 0.4, 0.2, 1e-6);
+  EXPECT_RGB(material(s, 0).reflectance.value, 0.60383, 0.13287, 0.03310, 1e-5);  // encoded as sRGB
   EXPECT_EQ(faces(s, 0), 2u);
   EXPECT_EQ(material(s, 1).kind, MaterialKind::dielectric);
-  EXPECT_EQ(material(s, 1).ior, 1.4f);
+  EXPECT_FLOAT_EQ(material(s, 1).ior, 1.5046f / 1.000277f);
+  EXPECT_TRUE(says(s.notes, "usemtl glass: its Ni is not used: glass is bk7"));
   EXPECT_EQ(s.shapes[1].mask, none) << "glass is clear by itself";
   EXPECT_EQ(faces(s, 1), 2u);
   EXPECT_EQ(material(s, 2).kind, MaterialKind::conductor);
-  EXPECT_RGB(material(s, 2).specular.value, 0.9, 0.7, 0.3, 1e-6);
+  EXPECT_RGB(material(s, 2).specular.value, 1, 1, 1, 0);
+  EXPECT_GT(material(s, 2).k.x, 6) << "aluminium";
+  EXPECT_TRUE(says(s.notes, "usemtl brass: its Ks is not used: mirrors are of aluminium"));
   EXPECT_EQ(material(s, 3).kind, MaterialKind::phong);
-  EXPECT_RGB(material(s, 3).reflectance.value, 0.7, 0.1, 0.1, 1e-6);
-  EXPECT_RGB(material(s, 3).specular.value, 0.1, 0.1, 0.1, 1e-6);
+  EXPECT_RGB(material(s, 3).reflectance.value, 0.44799, 0.01002, 0.01002, 1e-5);
+  EXPECT_RGB(material(s, 3).specular.value, 0.01002, 0.01002, 0.01002, 1e-5);
   EXPECT_FLOAT_EQ(material(s, 3).exponent.value.x, 60);
   EXPECT_EQ(faces(s, 5), 2u) << "before the first usemtl, and without a material in the library";
   EXPECT_RGB(material(s, 5).reflectance.value, 0.5, 0.5, 0.5, 0);
   EXPECT_TRUE(says(s.notes, "shelf.obj: there is no mtllib \"such.mtl\": its materials are grey"));
   EXPECT_TRUE(says(s.notes, "shelf.obj: no mtllib has the material \"not there\": grey"));
-  EXPECT_TRUE(says(s.notes, "shelf.mtl: not used: Ke, Pr"));
+  EXPECT_TRUE(says(s.notes, "shelf.mtl: not used: Ke, Pr, Tr"));
   EXPECT_TRUE(
       std::any_of(s.files.begin(), s.files.end(), [](const std::string& file) { return file.ends_with("shelf.mtl"); }));
 }
@@ -130,8 +135,7 @@ TEST(Library, PicturesBumpsAndHoles) {
   ASSERT_EQ(mask.kind, MaterialKind::mask);
   Surface at;
   at.uv = {0.3f, 0.3f};
-  EXPECT_EQ(s.textures[mask.weight.texture].color1.value.x, 0.75f) << "Tr 0.25, times the picture";
-  EXPECT_EQ(s.textures[s.textures[mask.weight.texture].color0.texture].channel, Channel::alpha);
+  EXPECT_EQ(s.textures[mask.weight.texture].channel, Channel::alpha) << "in place of d";
   const Texture& picture = s.textures[s.materials[bump.nested[0]].reflectance.texture];
   EXPECT_EQ(picture.wrap_u, Wrap::clamp);
   // v is turned: 4 v + 0.5 from below is 1 - (4 (1 - v) + 0.5) from above
@@ -153,8 +157,46 @@ TEST(Library, IsLeftAloneWhereTheSceneSaysMore) {
   ASSERT_EQ(s.shapes.size(), 6u);
   EXPECT_EQ(material(s, 0).kind, MaterialKind::conductor);
   EXPECT_EQ(material(s, 1).kind, MaterialKind::plastic);
-  EXPECT_RGB(material(s, 2).reflectance.value, 0.8, 0.4, 0.2, 1e-6);
+  EXPECT_RGB(material(s, 2).reflectance.value, 0.60383, 0.13287, 0.03310, 1e-5);
   EXPECT_EQ(material(s, 3).kind, MaterialKind::phong);
+}
+
+TEST(Library, OneNamedBsdfLeavesTheRest) {
+  const auto named = [&](const std::string& name, const std::string& version) {
+    return load_inside(obj("shelf.obj", "<bsdf name='" + name + "' type='plastic'/>"), {}, version);
+  };
+  const Scene s = named("glass", "0.6.0");
+  ASSERT_EQ(s.shapes.size(), 6u);
+  EXPECT_EQ(material(s, 0).kind, MaterialKind::plastic);
+  EXPECT_EQ(faces(s, 0), 2u);
+  EXPECT_RGB(material(s, 1).reflectance.value, 0.60383, 0.13287, 0.03310, 1e-5);
+  EXPECT_EQ(named("bsdf", "0.6.0").shapes.size(), 1u) << "no usemtl of this name";
+  EXPECT_EQ(named("glass", "3.0.0").shapes.size(), 1u);
+  const Scene ref =
+      load_inside("<bsdf id='m' type='plastic'/>" + obj("shelf.obj", "<ref name='brass' id='m'/>"), {}, "0.6.0");
+  EXPECT_EQ(ref.shapes.size(), 6u);
+}
+
+TEST(Library, OneGroupHasItsMaterial) {
+  const Scene s = load_inside(obj("shelf.obj", "<integer name='shapeIndex' value='3'/>"), {}, "0.6.0");
+  ASSERT_EQ(s.shapes.size(), 1u);
+  EXPECT_EQ(material(s, 0).kind, MaterialKind::conductor);
+  EXPECT_EQ(faces(s, 0), 1u);
+}
+
+// The defaults are Mitsuba's: without illum no highlight, without Kd black.
+TEST(Library, SaysLittle) {
+  const std::string library = write_file("few.mtl",
+                                         "newmtl a\nKd 0.5 0.5 0.5\nKs 1 1 1\nNs 9\nnewmtl b\nd 0.5\nillum 3\n"
+                                         "newmtl c\nmap_Kd C:\\elsewhere\\four.png\n");
+  const std::string faces = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl c\nf 1 2 3\n";
+  const Scene s = load_inside(obj(write_file("few.obj", "mtllib " + library + "\n" + faces)), {}, "0.6.0");
+  ASSERT_EQ(s.shapes.size(), 3u);
+  EXPECT_EQ(material(s, 0).kind, MaterialKind::diffuse);
+  EXPECT_RGB(material(s, 0).reflectance.value, 0.21404, 0.21404, 0.21404, 1e-5);
+  EXPECT_RGB(material(s, 1).reflectance.value, 0, 0, 0, 0);
+  EXPECT_EQ(s.materials[s.shapes[1].mask].weight.value, Rgb(0.5f));
+  EXPECT_NE(material(s, 2).reflectance.texture, none) << "by its bare name";
 }
 
 TEST(Library, MissingOnesAreNoted) {

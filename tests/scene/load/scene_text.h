@@ -1,5 +1,5 @@
 // Enters: the inside of a <scene>.
-// Leaves: the Scene that the loader makes of it, or the error it gives.
+// Leaves: the Scene that the loader makes of it, or the error it gives; files for it to read.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -29,6 +29,21 @@ inline std::string error_of(const std::string& inside, const LoadOptions& option
     return error.what();
   }
   return {};
+}
+
+/// Writes a file of the test that runs; returns its path.
+inline std::string write_file(const std::string& name, const std::string& bytes) {
+  const std::string path =
+      testing::TempDir() + "ajar-" + testing::UnitTest::GetInstance()->current_test_info()->name() + "-" + name;
+  std::ofstream(path, std::ios::binary) << bytes;
+  return path;
+}
+
+/// A row of pixels, three numbers each, as they stand.
+inline std::string write_pfm(const std::string& name, const std::vector<float>& numbers) {
+  std::string bytes = "PF\n" + std::to_string(numbers.size() / 3) + " 1\n-1.0\n";
+  bytes.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(float));
+  return write_file(name, bytes);
 }
 
 inline bool says(const std::vector<std::string>& notes, const std::string& words) {

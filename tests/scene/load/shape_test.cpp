@@ -148,6 +148,65 @@ TEST(Shapes, BsdfsOfAnObjGoByUsemtl) {
   EXPECT_SAYS(error_of(shape("obj", halves + named("a", 0.1) + named("a", 0.2))), "has the name of another bsdf");
 }
 
+// A floor and a wall with a common edge, in two groups.
+const std::string corner = "v 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nv 0 1 0\nv 0 1 1\ng a\nf 1 2 3 4\ng b\nf 1 5 6 2\n";
+
+TEST(Shapes, GroupsOfAnOldObjAreMeshesOfTheirOwn) {
+  const std::string file = "<string name='filename' value='" + write_file("corner.obj", corner) + "'/>";
+  const auto mesh = [&](const std::string& version, const std::string& inside = "") {
+    return load_inside("<shape type='obj'>" + file + inside + "</shape>", {}, version).meshes.at(0);
+  };
+  EXPECT_EQ(mesh("3.0.0").positions.size(), 6u);
+  EXPECT_EQ(mesh("0.6.0").positions.size(), 8u);
+  EXPECT_EQ(mesh("0.6.0").normals[0], Vec3(0, 1, 0));
+  EXPECT_EQ(mesh("0.6.0", "<boolean name='collapse' value='true'/>").positions.size(), 6u);
+  const std::string second = "<integer name='shapeIndex' value='1'/>";
+  EXPECT_EQ(mesh("0.6.0", second).positions.size(), 4u);
+  EXPECT_EQ(mesh("0.6.0", second).positions[1], Vec3(0, 1, 0));
+  EXPECT_TRUE(says(load_inside("<shape type='obj'>" + file + second + "</shape>").notes, "\"shapeIndex\" is not used"));
+  EXPECT_SAYS(kit::error_of([&] { mesh("0.6.0", "<integer name='shapeIndex' value='2'/>"); }),
+              "corner.obj: shapeIndex 2: the file has 2 groups of faces, counted from 0");
+  // both of one file, and all of it
+  const auto part = [&](const std::string& inside) { return "<shape type='obj'>" + file + inside + "</shape>"; };
+  const Scene s =
+      load_inside(part(second) + part("<integer name='shapeIndex' value='0'/>") + part(second) + part(""), {}, "0.6.0");
+  ASSERT_EQ(s.meshes.size(), 4u);
+  EXPECT_EQ(s.meshes[1].positions[1], Vec3(0, 0, 1));
+  EXPECT_EQ(s.meshes[2].positions[1], Vec3(0, 1, 0));
+  EXPECT_EQ(s.meshes[3].triangles.size(), 4u);
+}
+
+// In version 0.x colours of vertices are encoded as sRGB unless the scene says otherwise.
+TEST(Shapes, ColoursOfOldPlys) {
+  for (const std::string& prefix : {std::string(), std::string("diffuse_")}) {
+    const std::string property = "property uchar " + prefix;
+    const std::string path = write_file(prefix + "grey.ply",
+                                        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                                        "property float z\n" +
+                                            property + "red\n" + property + "green\n" + property +
+                                            "blue\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                                            "0 0 0 128 255 0\n1 0 0 128 255 0\n0 1 0 128 255 0\n3 0 1 2\n");
+    const std::string encoded = shape("ply", file(path));
+    const std::string linear = shape("ply", file(path) + "<boolean name='srgb' value='false'/>");
+    const Scene old = load_inside(encoded + linear + encoded + linear, {}, "0.6.0");
+    for (size_t i = 0; i < 4; ++i)
+      EXPECT_RGB(old.meshes[i].colors.at(1), i % 2 == 0 ? 0.21586 : 128 / 255.0, 1, 0, 1e-5);
+    EXPECT_FALSE(says(old.notes, "srgb"));
+    EXPECT_RGB(load_inside(encoded).meshes[0].colors.at(1), 128 / 255.0, 1, 0, 1e-6);
+    EXPECT_TRUE(says(load_inside(linear).notes, "\"srgb\" is not used"));
+  }
+}
+
+TEST(Shapes, StraysAreTold) {
+  const std::string texture = "<texture type='checkerboard' id='t'/>";
+  EXPECT_TRUE(says(load_inside(texture + shape("sphere", "<ref id='t'/>")).notes,
+                   "<ref id=\"t\">: a texture is no bsdf: not used; put it inside one"));
+  const std::string group = "<shape type='shapegroup' id='g'><shape type='sphere'/></shape>";
+  const Scene s = load_inside(group + shape("instance", "<ref id='g'/><bsdf type='plastic'/><emitter type='area'/>"));
+  EXPECT_TRUE(says(s.notes, "<bsdf type=\"plastic\">: an instance shows its shapegroup as it is: not used"));
+  EXPECT_TRUE(says(s.notes, "<emitter type=\"area\">: an instance shows its shapegroup as it is: not used"));
+}
+
 TEST(Shapes, Emitters) {
   const Scene s = load_inside(shape("cube") + shape("sphere", light));
   ASSERT_EQ(s.lights.size(), 1u);

@@ -143,6 +143,71 @@ TEST(TextureKinds, Scale) {
               "needs a nested <texture>");
 }
 
+std::string shown(const std::string& path, const std::string& inside = "") {
+  return "<texture name='reflectance' type='bitmap'><string name='filename' value='" + path + "'/>" + nearest + inside +
+         "</texture>";
+}
+
+// Reflectances above 1 would make light from nothing, wherever they come from.
+TEST(Limits, BitmapsShowAtMostOne) {
+  const std::string path = write_pfm("bright.pfm", {0.5f, 1.2f, 0.25f, 0.1f, 0.2f, 3});
+  const Scene s = with(shown(path));
+  EXPECT_RGB(at(s, 0.25f, 0.5f), 0.5, 1, 0.25, 0);
+  EXPECT_RGB(at(s, 0.75f, 0.5f), 0.1f, 0.2f, 1, 0);
+  EXPECT_TRUE(says(s.notes, "bright.pfm: numbers below 0 or above 1 are no reflectances: they were set to 0 or 1"));
+  // a lamp shows all of the same file
+  const Scene both = load_inside("<bsdf type='diffuse'>" + shown(path) + "</bsdf><bsdf type='diffuse'>" + shown(path) +
+                                 "</bsdf><shape type='sphere'><emitter type='area'><texture name='radiance' "
+                                 "type='bitmap'><string name='filename' value='" +
+                                 path + "'/>" + nearest + "</texture></emitter></shape>");
+  EXPECT_EQ(both.images.size(), 2u);
+  EXPECT_RGB(at(both, 0.75f, 0.5f), 0.1f, 0.2f, 1, 0);
+  Surface surface;
+  surface.uv = {0.75f, 0.5f};
+  EXPECT_RGB(eval(both, both.lights[0].radiance, surface), 0.1f, 0.2f, 3, 0);
+  EXPECT_EQ(with(shown(write_pfm("dim.pfm", {0.5f, 1, 0}))).images.size(), 1u);
+}
+
+TEST(Limits, ProductsShowAtMostOne) {
+  const auto scaled = [](const std::string& by, const std::string& inside) {
+    return with("<texture name='reflectance' type='scale'><float name='scale' value='" + by + "'/>" + inside +
+                "</texture>");
+  };
+  Scene s = scaled("2", "<rgb name='v' value='0.9 0.4 0.1'/>");
+  EXPECT_RGB(at(s, 0, 0), 1, 0.8f, 0.2f, 1e-6);
+  EXPECT_RGB(mean(s, s.materials[0].reflectance), 1, 0.8f, 0.2f, 1e-6);
+  EXPECT_TRUE(says(s.notes, "reflectances above 1 would make light from nothing"));
+  s = scaled("2", "<texture type='checkerboard'/>");
+  EXPECT_RGB(at(s, 0.1f, 0.1f), 0.8f, 0.8f, 0.8f, 1e-6);
+  EXPECT_EQ(s.textures.size(), 2u) << "no limit where none is needed";
+  EXPECT_FALSE(says(s.notes, "above 1"));
+  // what is scaled has no limit of its own
+  s = scaled("0.5", "<texture type='checkerboard'><rgb name='color0' value='1.6'/></texture>");
+  EXPECT_RGB(at(s, 0.1f, 0.1f), 0.8f, 0.8f, 0.8f, 1e-6);
+  s = scaled("0.25", shown(write_pfm("bright.pfm", {3, 1.2f, 0.4f})));
+  EXPECT_RGB(at(s, 0.5f, 0.5f), 0.75f, 0.3f, 0.1f, 1e-6);
+  EXPECT_FALSE(says(s.notes, "above 1"));
+}
+
+std::string coloured(double scale) {
+  return "<shape type='ply'><string name='filename' value='coloured.ply'/><bsdf type='diffuse'>"
+         "<texture name='reflectance' type='mesh_attribute'><string name='name' value='vertex_color'/>"
+         "<float name='scale' value='" +
+         std::to_string(scale) + "'/></texture></bsdf></shape>";
+}
+
+TEST(Limits, MeshAttributesShowAtMostOne) {
+  Surface surface;
+  surface.shape = 0;
+  surface.bary = {1, 0};
+  Scene s = load_inside(coloured(2));
+  EXPECT_RGB(eval(s, s.materials[0].reflectance, surface), 0, 1, 0, 0);
+  EXPECT_TRUE(says(s.notes, "its mesh attributes make reflectances above 1: there they become 1"));
+  s = load_inside(coloured(0.5));
+  EXPECT_RGB(eval(s, s.materials[0].reflectance, surface), 0, 0.5, 0, 0);
+  EXPECT_FALSE(says(s.notes, "above 1"));
+}
+
 TEST(TextureKinds, MeshAttribute) {
   for (const char* type : {"mesh_attribute'><string name='name' value='vertex_color'/></texture>", "vertexcolors'/>"}) {
     const Scene s =

@@ -69,6 +69,7 @@ TEST(Transform, WrongOnesAreErrors) {
   EXPECT_SAYS(error("<translate x='1e99'/>"), "beyond the range");
   EXPECT_SAYS(error("<scale value='1e30'/><scale value='1e30'/>"), "beyond the range");
   EXPECT_SAYS(error("<rotate angle='5'/>"), "needs an axis");
+  EXPECT_SAYS(error("<rotate y='1'/>"), "needs angle=\"...\", in degrees");
   EXPECT_EQ(error("<rotate x='0' y='0' z='0' angle='0'/>"), "");
   EXPECT_SAYS(error("<lookat origin='nan,0,1' target='0,0,0'/>"), "origin=\"nan,0,1\" should be three numbers");
   EXPECT_SAYS(error("<lookat origin='1e300,0,0' target='0,0,0' up='0,1,0'/>"), "origin is beyond the range of numbers");
@@ -118,6 +119,12 @@ TEST(Animation, RestsBeforeAndAfterItsKeys) {
   EXPECT_RGB(moved_at(1.5, keys, {0, 0, 0}), 2, 0, 0, 1e-6);
   EXPECT_RGB(moved_at(3, keys, {0, 0, 0}), 5, 0, 0, 1e-6);
   EXPECT_RGB(moved_at(9, keys, {0, 0, 0}), 5, 0, 0, 1e-6);
+}
+
+TEST(Animation, OfAnotherNameIsNotUsed) {
+  const Scene s =
+      load_inside("<shape type='sphere'><animation name='animation'><transform time='0'/></animation></shape>");
+  EXPECT_TRUE(says(s.notes, "the parameter \"animation\" is not used"));
 }
 
 TEST(Animation, TurnsRatherThanSqueezes) {

@@ -56,6 +56,15 @@ TEST(Parameters, DefaultIsPutInAndOverruled) {
   EXPECT_FLOAT_EQ(grey(load_inside(text, define("r", "0.75"))), 0.75f);
 }
 
+TEST(Parameters, ADollarAfterABackslashIsOne) {
+  const std::string text =
+      "<default name='x' value='y'/><texture type='checkerboard' id='a\\$x'/><bsdf type='diffuse'>"
+      "<ref name='reflectance' id='a\\$x'/></bsdf>";
+  EXPECT_SAYS(error_of(text + "<ref id='none\\$x'/>"), "the id \"none$x\"");
+  EXPECT_SAYS(error_of(text + "<ref id='$x\\$'/>"), "the id \"y$\"");
+  EXPECT_SAYS(kit::error_of([&] { load_inside(text + "<ref id='none\\$x'/>", {}, "0.6.0"); }), "the id \"none\\y\"");
+}
+
 TEST(Parameters, FirstDefaultCounts) {
   EXPECT_FLOAT_EQ(grey(load_inside("<default name='r' value='0.25'/><default name='r' value='0.5'/>"
                                    "<bsdf type='diffuse' id='m'><rgb name='reflectance' value='$r'/></bsdf>" +
@@ -171,6 +180,34 @@ TEST(Include, BringsElementsAndDefaults) {
   EXPECT_FLOAT_EQ(grey(load_inside("<default name='f' value='fragment'/><include filename='$f.xml'/>" + use)), 0.3f);
   EXPECT_FLOAT_EQ(grey(load_inside("<include filename='lone.xml'/><shape type='sphere'><ref id='lone'/></shape>")),
                   0.6f);
+}
+
+TEST(Include, MayBeAParameter) {
+  const std::string path = write_file("tex.xml", "<texture version='3.0.0' type='checkerboard'/>");
+  const Scene s =
+      load_inside("<bsdf type='plastic'><include filename='" + path + "' name='specularReflectance'/></bsdf>");
+  EXPECT_NE(s.materials[0].specular.texture, none);
+  EXPECT_EQ(s.materials[0].reflectance.texture, none);
+}
+
+TEST(Files, NamesOfOtherCapitalsAreTold) {
+  EXPECT_SAYS(error_of("<shape type='obj'><string name='filename' value='Folder\\INNER.obj'/></shape>"),
+              ", but \"folder/inner.obj\"; correct its capitals");
+  EXPECT_SAYS(error_of("<include filename='Fragment.XML'/>"), "but \"fragment.xml\"; correct its capitals");
+  EXPECT_SAYS(error_of("<include filename='Fragments.XML'/>"), "correct the name, or add its folder");
+}
+
+TEST(Files, PointersOfGitLfsAreTold) {
+  const std::string pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n";
+  const std::string path = write_file("pointer", pointer),
+                    says_so = "is a pointer of Git LFS, not the file itself; fetch it";
+  for (const char* type : {"obj", "ply", "serialized"})
+    EXPECT_SAYS(
+        error_of(std::string("<shape type='") + type + "'><string name='filename' value='" + path + "'/></shape>"),
+        says_so);
+  EXPECT_SAYS(error_of("<emitter type='envmap'><string name='filename' value='" + path + "'/></emitter>"), says_so);
+  EXPECT_SAYS(error_of("<include filename='" + path + "'/>"), says_so);
+  EXPECT_SAYS(kit::error_of([&] { load_scene(path); }), says_so);
 }
 
 TEST(Include, WrongOnesAreErrors) {
