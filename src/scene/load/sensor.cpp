@@ -229,6 +229,7 @@ void load_integrator(Loader& loader, const Node& node) {
                                     {"guided-vcm", "guided-vcm"},
                                     {"photon", "photon"},
                                     {"vpl", "vpl"},
+                                    {"plain-vpl", "plain-vpl"},
                                     {"volpath", "path"},
                                     {"volpath-simple", "path"},
                                     {"volpathmis", "path"},
@@ -246,10 +247,8 @@ void load_integrator(Loader& loader, const Node& node) {
   std::string type = node.type;
   std::replace(type.begin(), type.end(), '_', '-');
   const auto name = std::find_if(std::begin(names), std::end(names), [&](const Alias& a) { return type == a.theirs; });
-  if (name == std::end(names)) {
-    hints.integrator = node.written;
-    return note(loader, node, "Ajar has no integrator of this name: its own default is used");
-  }
+  if (name == std::end(names))
+    return note(loader, node, "Ajar has no integrator of this name: it chooses one as if the scene named none");
   hints.integrator = name->ours;
   note_unused(p, {"id", "rr_depth", "strict_normals", "samples_per_pass", "timeout", "block_size", "light_image",
                   "sample_direct", "emitter_samples", "bsdf_samples", "shading_samples", "max_null_collisions",
