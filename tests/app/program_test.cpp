@@ -111,6 +111,16 @@ TEST_F(Program, AFileThatGrowsTooLargeIsAnError) {
   EXPECT_TRUE(fs::is_empty(folder / "there"));
 }
 
+TEST_F(Program, FilmsThatAreInterruptedSaySo) {
+  std::ofstream(folder / "ffmpeg") << "#!/bin/sh\nfor last; do :; done; echo >$last; kill -INT $PPID; exec sleep 60\n";
+  fs::permissions(folder / "ffmpeg", fs::perms::all);
+  const std::string animate = "PATH=$PWD:$PATH \"$ajar\" animate box.xml --integrator path --frames 2 --spp 1 ";
+  EXPECT_EQ(run(animate + "-o there/f_%d.exr --video film.mp4" + small), 130);
+  EXPECT_NE(said().find("ajar: interrupted; film.mp4 is not made"), std::string::npos) << said();
+  EXPECT_TRUE(is_there("there/animation.json"));
+  for (const auto& entry : fs::directory_iterator(folder)) EXPECT_NE(entry.path().extension(), ".mp4") << entry.path();
+}
+
 TEST_F(Program, MistypedOptionsAreToldFirst) {
   for (const auto& [words, says] : {std::pair{"render --foo", "ajar: --foo: there is no such option; see ajar render"},
                                     {"--foo", "ajar: --foo: there is no such option; see ajar --help"},
