@@ -11,10 +11,14 @@
 
 #include "ajar/core/bytes.h"
 #include "ajar/core/error.h"
+#include "animate_files.h"
 #include "animate_options.h"
 #include "commands.h"
 #include "frames.h"
+#include "outputs.h"
 #include "progress.h"
+#include "render_options.h"
+#include "say.h"
 #include "stop.h"
 #include "summary.h"
 
@@ -35,7 +39,8 @@ struct Work {
   Shooting shooting;
   FramePattern pattern, png;
   std::string folder;
-  RenderOptions options;
+  RenderOptions options;      // of frame 0, whichever frames are to be rendered; see frame_options
+  int width = 0, height = 0;  // of frame 0
   SequenceOptions sequence;
   std::string options_key;  // of the whole animation, without budgets
   std::string key;          // the same with the files of its first frame
@@ -47,7 +52,16 @@ struct Work {
   double shown = -infinity;
 };
 
-// Everything that decides the pixels of all frames but their budgets and the scene's files.
+// Budget and depth may be the scene's own, and its parameters may change them from frame to frame.
+RenderOptions frame_options(const Work& w, int frame, const Scene& scene) {
+  RenderOptions options = render_options(w.arguments, scene);
+  if (options.integrator != w.options.integrator)
+    throw Error(fmt::format("frame {}: the scene names the integrator {}, but {} in frame 0; choose with --integrator",
+                            frame, options.integrator, w.options.integrator));
+  return options;
+}
+
+// Everything that decides the pixels of all frames but their budgets and the scene's files. scene: of frame 0.
 std::string animation_key(const Work& w, const Scene& scene) {
   Run run;
   run.scene_path = w.arguments.scene;
@@ -66,10 +80,14 @@ std::string animation_key(const Work& w, const Scene& scene) {
 std::string files_key(const Scene& scene) { return fmt::format("files with checksum {:016x}", scene.content); }
 
 std::string frame_key(const Work& w, int frame, const Scene& scene) {
-  const RenderOptions& o = w.options;
+  const RenderOptions o = frame_options(w, frame, scene);
   const std::string budget = fmt::format("{:g} s,{:g} CPU s,{} spp", o.seconds, o.cpu_seconds, o.spp);
-  return fmt::format("{},frame {} {},{},{}", w.options_key, frame, describe(w.shooting.timeline, frame),
-                     files_key(scene), budget);
+  std::string key = fmt::format("{},frame {} {},{},{}", w.options_key, frame, describe(w.shooting.timeline, frame),
+                                files_key(scene), budget);
+  const int width = scene.camera.crop_width, height = scene.camera.crop_height;
+  if (o.max_depth != w.options.max_depth) key += fmt::format(",depth {}", o.max_depth);
+  if (width != w.width || height != w.height) key += fmt::format(",{}x{}", width, height);
+  return key;
 }
 
 // Whether the frame is there as it should be; a PNG that is missing is made again.
@@ -77,13 +95,13 @@ bool is_done(Work& w, int frame) {
   const std::string path = frame_name(w.pattern, frame);
   std::error_code unreadable;
   if (!fs::exists(path, unreadable)) return false;
+  const Picture image = read_frame(path);
   const Metadata metadata = read_metadata(path);
   const auto found = metadata.find("ajar:frame");
   const std::string here = frame_key(w, frame, *load_frame(w.shooting, frame));
   const auto* there = found == metadata.end() ? nullptr : std::get_if<std::string>(&found->second);
   if (there && *there == here) {
-    if (const std::string png = frame_name(w.png, frame); !fs::exists(png))
-      write_png(png, select(read_picture(path), {"R", "G", "B"}));
+    if (const std::string png = frame_name(w.png, frame); !fs::exists(png)) write_png(png, image);
     return true;
   }
   const std::string why = there && there->starts_with(w.options_key + ",")
@@ -127,16 +145,24 @@ void write_frame(Work& w, int frame, const Stage& stage, Run& run, const RenderS
   write_exr(run.out_path, image, data, w.arguments.half);  // last: a frame is done when its image is there
 }
 
-// Renders one frame.
-void render_frame(Work& w, int frame, const Stage& stage, const Lessons& lessons) {
+// What its record tells.
+Run frame_run(const Work& w, int frame, const Stage& stage) {
   Run run;
   run.scene_path = w.arguments.scene, run.out_path = frame_name(w.pattern, frame);
   for (const auto& [name, value] : parameters_at(w.shooting.timeline, frame)) run.defines.push_back(name + "=" + value);
-  run.options = w.options;
+  run.at = time_at(w.shooting.timeline, frame);
+  run.options = frame_options(w, frame, *stage.scene);
   run.options.seed = image_seed(w.sequence, w.options.seed, uint32_t(frame));
+  run.light_choice = usual_light_choice(run.options.integrator);
   run.threads = w.options.threads > 0 ? w.options.threads : int(std::thread::hardware_concurrency());
   run.load_seconds = stage.load_seconds, run.load_cpu = stage.load_cpu;
   run.build_seconds = stage.build_seconds, run.build_cpu = stage.build_cpu;
+  return run;
+}
+
+// Renders one frame.
+void render_frame(Work& w, int frame, const Stage& stage, const Lessons& lessons) {
+  Run run = frame_run(w, frame, stage);
   RenderState state =
       w.carried ? start_with(*stage.scene, run.options, w.carried->fields) : start_render(*stage.scene, run.options);
   state.stats.seconds = state.stats.learn_seconds = lessons.seconds;
@@ -153,9 +179,10 @@ void render_frame(Work& w, int frame, const Stage& stage, const Lessons& lessons
   write_frame(w, frame, stage, run, state);
   ++w.done;
   show(w, frame, samples_text(state), true);
-  if (state.stats.rejected > 0)
-    fmt::print(stderr, "ajar: warning: frame {}: {} values were not finite or negative and were left out\n", frame,
-               state.stats.rejected);
+  if (state.stats.rejected == 0) return;
+  clear_line();
+  say(stderr, "ajar: warning: frame {}: {} values were not finite or negative and were left out\n", frame,
+      state.stats.rejected);
 }
 
 std::string carried_name(const Work& w) {
@@ -168,8 +195,8 @@ Lessons teach_frame(Work& w, int frame, const Stage& stage) {
   const double wall = wall_seconds(), cpu = process_cpu_seconds();
   Lessons lessons;
   const Carried* before = w.sequence.coherence.fields && w.carried ? &*w.carried : nullptr;
-  std::optional<Fields> fields = teach(*stage.scene, *stage.accel, w.options, w.sequence, before, stage.moved,
-                                       uint32_t(frame), [&](const RenderState& now) {
+  std::optional<Fields> fields = teach(*stage.scene, *stage.accel, frame_options(w, frame, *stage.scene), w.sequence,
+                                       before, stage.moved, uint32_t(frame), [&](const RenderState& now) {
                                          lessons.counters = now.stats.counters;
                                          show(w, frame, "learning", false);
                                          return !stop_asked();
@@ -180,32 +207,47 @@ Lessons teach_frame(Work& w, int frame, const Stage& stage) {
   return lessons;
 }
 
+void tell_frame(const Work& w, int frame) {
+  if (w.arguments.quiet) return;
+  clear_line();
+  say(stdout, "{}\n", frame_name(w.pattern, frame));
+  std::fflush(stdout);
+}
+
 // From the first frame whose fields are needed to the last that is missing.
 void render_frames(Work& w) {
   const bool taught = is_guided(w.options.integrator) && (w.sequence.coherence.fields || w.sequence.coherence.numbers);
   std::optional<Stage> before;
+  const int count = w.shooting.timeline.frames.count;
   int frame = w.to_do.front();
   if (w.carries) {
     w.carried = find_carried(w.folder, w.key, frame - 1);
     frame = w.carried ? int(w.carried->frame) + 1 : 0;
     if (w.carried) before = Stage{load_frame(w.shooting, int(w.carried->frame)), {}, {}, {}};
     if (frame < w.to_do.front() && !w.arguments.quiet)
-      fmt::print(stderr,
-                 "ajar: note: the fields of frames {} to {} are learned again: no frame before {} left any here\n",
-                 frame, w.to_do.front() - 1, w.to_do.front());
+      say(stderr, "ajar: note: the fields of frames {} to {} are learned again: no frame before {} left any here\n",
+          frame, w.to_do.front() - 1, w.to_do.front());
   }
   for (; frame <= w.to_do.back(); ++frame) {
     const bool wanted = std::binary_search(w.to_do.begin(), w.to_do.end(), frame);
     if (!wanted && !w.carries) continue;
     Stage stage = set_up(w.shooting, frame, before ? &*before : nullptr);
+    if (wanted) check_apart(w.arguments, {frame, frame, count}, *stage.scene, w.shooting.cache);
     const Lessons lessons = taught ? teach_frame(w, frame, stage) : Lessons{};
     if (wanted) {
       render_frame(w, frame, stage, lessons);
       if (w.carries) save_carried(carried_name(w), w.key, *w.carried);
-      if (!w.arguments.quiet) fmt::print("{}\n", frame_name(w.pattern, frame)), std::fflush(stdout);
+      tell_frame(w, frame);
     }
     before = std::move(stage);
   }
+}
+
+void write_film(const Work& w) {
+  const AnimateArguments& a = w.arguments;
+  if (a.video.empty()) return;
+  make_video(w.png, w.shooting.timeline.frames, a.fps, a.video);
+  if (!a.quiet) say(stdout, "{}\n", a.video);
 }
 
 void write_figures(const Work& w) {
@@ -217,42 +259,37 @@ void write_figures(const Work& w) {
   write_text(stem + ".csv", sequence_csv(figures));
   write_text(stem + ".svg", sequence_svg(figures, fmt::format("{}, {}", fs::path(w.arguments.scene).stem().string(),
                                                               w.options.integrator)));
-  if (!w.arguments.quiet) fmt::print("{}.json\n{}.csv\n{}.svg\n", stem, stem, stem);
+  if (!w.arguments.quiet) say(stdout, "{}.json\n{}.csv\n{}.svg\n", stem, stem, stem);
 }
 
-// Missing reference frames, before the work rather than after it.
-void check_reference(const AnimateArguments& a, const FrameRange& frames) {
-  if (a.reference.empty()) return;
-  const FramePattern reference = parse_pattern("--reference", a.reference);
-  for (int f = frames.first; f <= frames.last; ++f)
-    if (!fs::exists(frame_name(reference, f)))
-      throw Error(fmt::format("--reference {}: there is no {}", a.reference, frame_name(reference, f)));
+void print_notes(const Timeline& timeline, const Scene& scene) {
+  for (const auto* notes : {&timeline.notes, &scene.notes})
+    for (const std::string& n : *notes) say(stderr, "ajar: note: {}\n", n);
 }
 
 Work prepare(const AnimateArguments& a) {
   Work w{a, {a.scene, a.size, a.lenient, make_timeline(a.frames, a.defines, a.keyframes, a.at), {}}};
   w.pattern = w.png = parse_pattern("-o", a.out);
   w.png.after.replace(w.png.after.size() - 4, 4, ".png");
-  check_reference(a, w.shooting.timeline.frames);
-  if (!a.video.empty()) {
-    check_file(a.video);
-    require_ffmpeg();
-  }
+  if (!a.video.empty()) check_video(a.video);
   const FrameRange& r = w.shooting.timeline.frames;
   // Finds out what times there are, and that both ends can be loaded.
-  const std::string files = files_key(*load_frame(w.shooting, 0));
-  const std::shared_ptr<const Scene> last = load_frame(w.shooting, r.last), scene = load_frame(w.shooting, r.first);
+  const std::shared_ptr<const Scene> zero = load_frame(w.shooting, 0), last = load_frame(w.shooting, r.last),
+                                     scene = load_frame(w.shooting, r.first);
+  for (const auto& one : {zero, scene, last}) check_apart(a, r, *one, w.shooting.cache);
   if (!a.at.empty() && scene->hints.first_time > scene->hints.last_time)
     throw Error(fmt::format("--at {}: nothing in the scene has an <animation>; leave it out", a.at));
-  std::vector<std::string> notes = w.shooting.timeline.notes;
-  notes.insert(notes.end(), scene->notes.begin(), scene->notes.end());
-  for (const std::string& n : notes)
-    if (!a.quiet) fmt::print(stderr, "ajar: note: {}\n", n);
-  w.options = render_options(a, *scene);
+  if (!a.quiet) print_notes(w.shooting.timeline, *scene);
+  w.options = render_options(a, *zero);
+  w.width = zero->camera.crop_width, w.height = zero->camera.crop_height;
+  frame_options(w, r.first, *scene), frame_options(w, r.last, *last);
   w.sequence = sequence_options(a);
   w.carries = w.sequence.coherence.fields && is_guided(w.options.integrator);
-  w.options_key = animation_key(w, *scene);
-  w.key = fmt::format("{},{}", w.options_key, files);
+  w.options_key = animation_key(w, *zero);
+  // What all frames have by the user's word each may have otherwise by the scene's.
+  w.key = fmt::format("{},{}{}{}", w.options_key, files_key(*zero), a.max_depth == not_given ? "" : ",one depth",
+                      a.size.empty() ? "" : ",one size");
+  check_references(a, w.shooting);
   const fs::path folder = fs::path(frame_name(w.pattern, 0)).parent_path();
   w.folder = folder.empty() ? "." : folder.string();
   make_folder(w.folder);
@@ -266,15 +303,13 @@ void run_animate(const AnimateArguments& a) {
   const FrameRange& r = w.shooting.timeline.frames;
   const int there = r.last - r.first + 1 - int(w.to_do.size());
   if (there > 0 && !a.quiet)
-    fmt::print(stderr, "ajar: note: {} of {} frames are there already\n", there, r.last - r.first + 1);
+    say(stderr, "ajar: note: {} of {} frames are there already\n", there, r.last - r.first + 1);
   w.began = wall_seconds();
   catch_stop();
   if (!w.to_do.empty()) render_frames(w);
-  if (isatty(STDERR_FILENO) && !a.quiet) std::fputs("\r\033[K", stderr);
-  write_figures(w);
-  if (a.video.empty()) return;
-  make_video(w.png, r, a.fps, a.video);
-  if (!a.quiet) fmt::print("{}\n", a.video);
+  if (!a.quiet) clear_line();
+  // An error that only the figures have, of a reference elsewhere in the folder, say, does not cost the film.
+  write_each({[&] { write_figures(w); }, [&] { write_film(w); }});
 }
 
 }  // namespace

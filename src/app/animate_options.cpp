@@ -62,7 +62,7 @@ void add_options(CLI::App& command, AnimateArguments& arguments) {
       ->check(CLI::IsMember({"both", "camera", "light"}));
   c->add_option("--field-memory", a->field_memory, "memory that learned fields may take: 512K, 32M (default), 1G");
   c->add_option("--reference", a->reference, "frames to measure error and flicker against: DIR/ref_%04d.exr");
-  c->add_option("--video", a->video, "film to make of the frames with ffmpeg: OUT.mp4");
+  c->add_option("--video", a->video, "film to make of the frames with ffmpeg: OUT.mp4, .mov, .mkv, .webm, .gif ...");
   c->add_option("--fps", a->fps, "of the film (24)")->check(CLI::Range(1.0, 240.0));
   c->add_flag("--half", a->half, "16-bit floats in the EXR");
   c->add_flag("--lenient", a->lenient, "leave out what the loader does not know, with a note");

@@ -10,16 +10,12 @@
 #include "ajar/core/error.h"
 
 namespace ajar {
-namespace {
 
-// In lower case.
 std::string extension_of(const std::string& path) {
   std::string out = std::filesystem::path(path).extension().string();
   std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return char(std::tolower(c)); });
   return out;
 }
-
-}  // namespace
 
 void set_size(Camera& camera, const std::string& text) {
   int w = 0, h = 0, end = 0;
@@ -88,13 +84,14 @@ void check_integrator(const std::string& name) {
 bool is_png(const std::string& path) { return extension_of(path) == ".png"; }
 bool is_exr(const std::string& path) { return extension_of(path) == ".exr"; }
 
-bool is_same_file(const std::string& a, const std::string& b) {
+std::string place_of(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code error;
-  const auto place = [&](const std::string& path) { return fs::weakly_canonical(fs::absolute(path, error), error); };
-  const fs::path first = place(a);
-  return a == b || (!first.empty() && first == place(b));
+  const fs::path place = fs::weakly_canonical(fs::absolute(path, error), error);
+  return place.empty() ? path : place.string();
 }
+
+bool is_same_file(const std::string& a, const std::string& b) { return place_of(a) == place_of(b); }
 
 CLI::Validator whole(uint64_t least, uint64_t most) {
   const auto check = [=](const std::string& text) -> std::string {

@@ -36,9 +36,13 @@ void check_integrator(const std::string& name);
 CLI::Validator whole(uint64_t least, uint64_t most);
 /// The option --threads; 0 where it is not given: all.
 void add_threads(CLI::App& command, int& threads);
+/// Of a file's name, in lower case: ".png".
+std::string extension_of(const std::string& path);
 /// Whether the name ends with .png, in any case.
 bool is_png(const std::string& path);
 bool is_exr(const std::string& path);
+/// Where a name leads to, whatever it is called: links and dots are followed, as far as there is something.
+std::string place_of(const std::string& path);
 /// Whether both names lead to one file, there or not.
 bool is_same_file(const std::string& a, const std::string& b);
 /// Values that are there but empty are errors: they come of shell variables that nobody set.

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -19,6 +20,7 @@
 #include "arguments.h"
 #include "commands.h"
 #include "progress.h"
+#include "say.h"
 #include "stop.h"
 #include "version.h"
 
@@ -48,7 +50,7 @@ struct Line {
     std::fflush(stderr);
   }
   void clear() const {
-    if (shown && terminal) std::fputs("\r\033[K", stderr);
+    if (shown) clear_line();
   }
 };
 
@@ -83,6 +85,7 @@ bool is_stress(const std::string& suite) {
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
     argv.push_back(nullptr);
+    for (const int ignored : {SIGPIPE, SIGXFSZ}) std::signal(ignored, SIG_DFL);  // here alone; see guard_streams
     execv(program.c_str(), argv.data());
   }
   throw Error(
@@ -94,7 +97,7 @@ void run_bench_command(const Arguments& a) {
   const Suite suite = load_suite(a.suite, a.quick);
   for (const BenchScene& scene : suite.scenes)
     if (!scene.missing.empty() && !a.quiet)
-      fmt::print(stderr, "ajar: note: scene {} is left out: {}\n", scene.name, scene.missing);
+      say(stderr, "ajar: note: scene {} is left out: {}\n", scene.name, scene.missing);
   BenchOptions options;
   options.folder = a.out;
   options.references =
@@ -111,9 +114,9 @@ void run_bench_command(const Arguments& a) {
   catch_stop();
   const nlohmann::ordered_json results = run_bench(suite, options);
   line.clear();
-  fmt::print("{}", results_table(results));
+  say(stdout, "{}", results_table(results));
   write_report(nlohmann::json(results), options.folder);
-  if (!a.quiet) fmt::print("{}\n", (options.folder / "report.html").string());
+  if (!a.quiet) say(stdout, "{}\n", (options.folder / "report.html").string());
   if (results["interrupted"]) throw Interrupted{"interrupted; the same command goes on from here"};
 }
 

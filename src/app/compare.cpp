@@ -9,6 +9,7 @@
 #include "ajar/report/metrics.h"
 #include "arguments.h"
 #include "commands.h"
+#include "say.h"
 
 namespace ajar {
 namespace {
@@ -62,7 +63,7 @@ void run(const Arguments& arguments) {
   }
   const std::string line = to_json(compare(image, reference));
   if (!arguments.diff.empty()) write_png(arguments.diff, difference_picture(image, reference));
-  fmt::print("{}\n", line);
+  say(stdout, "{}\n", line);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "ajar/core/files.h"
 #include "arguments.h"
 #include "commands.h"
+#include "say.h"
 
 namespace ajar {
 namespace {
@@ -26,7 +27,7 @@ void write_pictures(const Arguments& a, const Scene& scene, const Fields& fields
   const auto write = [&](const char* name, const Picture& picture, const std::string& legend) {
     const std::string path = (std::filesystem::path(a.out) / name).string();
     write_png(path, picture);
-    fmt::print("{}: {}\n", path, legend);
+    say(stdout, "{}: {}\n", path, legend);
   };
   const auto write_totals = [&](const char* name, Side side, const char* unit) {
     const FalseColour f = picture_totals(scene, accel, fields, side);
@@ -45,13 +46,13 @@ void run(const Arguments& a) {
   if (!a.scene.empty() && a.out.empty()) throw Error("--scene is for pictures: add -o FOLDER");
   if (!a.out.empty()) check_folder(a.out);
   if (a.scene.empty()) {
-    fmt::print("{}", describe(load_fields(a.file)));
+    say(stdout, "{}", describe(load_fields(a.file)));
     return;
   }
   Scene scene = load_scene(a.scene, load_options(a.defines, false));
   if (!a.size.empty()) set_size(scene.camera, a.size);
   const StoredFields stored = load_fields(a.file, scene_key(scene));
-  fmt::print("{}", describe(stored));
+  say(stdout, "{}", describe(stored));
   make_folder(a.out);
   write_pictures(a, scene, stored.fields);
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "ajar/core/error.h"
 #include "ajar/report/metrics.h"
@@ -29,8 +30,6 @@ double number_or(const Metadata& metadata, const std::string& name, double other
   if (found == metadata.end() || !std::holds_alternative<double>(found->second)) return otherwise;
   return std::get<double>(found->second);
 }
-
-Picture read_rgb(const std::string& path) { return select(read_picture(path), {"R", "G", "B"}); }
 
 FrameFigures measure_frame(const std::string& path, const Picture& image, const Timeline& timeline, int frame) {
   FrameFigures f;
@@ -69,6 +68,14 @@ std::string frame_name(const FramePattern& p, int frame) {
   return fmt::format("{}{:0{}}{}", p.before, frame, p.digits, p.after);
 }
 
+Picture read_frame(const std::string& path) {
+  try {
+    return select(read_picture(path), {"R", "G", "B"});
+  } catch (const Error&) {
+    throw Error(fmt::format("{}: is no frame, or a damaged one; remove it, and it is rendered again", path));
+  }
+}
+
 std::optional<double> time_at(const Timeline& t, int frame) {
   if (!t.has_time) return {};
   if (t.frames.count == 1) return t.first_time;
@@ -84,13 +91,30 @@ std::string describe(const Timeline& timeline, int frame) {
   return out;
 }
 
+namespace {
+
+// The loader knows parameters by -D alone.
+Scene load(const Shooting& s, const LoadOptions& options) {
+  try {
+    return load_scene(s.scene_path, options);
+  } catch (const Error& error) {
+    std::string what = error.what();
+    for (const auto& [name, track] : s.timeline.tracks)
+      if (const std::string typed = fmt::format("-D {}:", name); !track.file.empty() && what.find(typed) != what.npos)
+        what.replace(what.find(typed), typed.size(), fmt::format("{}: parameter \"{}\":", track.file, name));
+    throw Error(what);
+  }
+}
+
+}  // namespace
+
 std::shared_ptr<const Scene> load_frame(Shooting& s, int frame) {
   LoadOptions options;
   options.defines = parameters_at(s.timeline, frame);
   options.lenient = s.lenient;
   options.time = time_at(s.timeline, frame);
   options.cache = &s.cache;
-  auto scene = std::make_shared<Scene>(load_scene(s.scene_path, options));
+  auto scene = std::make_shared<Scene>(load(s, options));
   if (!s.timeline.has_time && scene->hints.first_time < scene->hints.last_time) {
     // The user said nothing: the whole of what the file tells.
     s.timeline.has_time = true;
@@ -143,26 +167,24 @@ std::vector<FrameFigures> measure(const FramePattern& pattern, const Timeline& t
   Picture before, reference_before;
   for (int f = 0; f < timeline.frames.count; ++f) {
     const std::string path = frame_name(pattern, f);
-    if (!fs::exists(path)) {
-      before = {};
-      continue;
-    }
-    Picture image = read_rgb(path), truth;
+    const Picture last = std::exchange(before, {}), last_truth = std::exchange(reference_before, {});
+    if (!fs::exists(path)) continue;
+    Picture image = read_frame(path);
     out.push_back(measure_frame(path, image, timeline, f));
-    if (!reference) continue;
-    const std::string name = frame_name(*reference, f);
-    truth = read_rgb(name);
+    const std::string name = reference ? frame_name(*reference, f) : "";
+    if (!reference || !fs::exists(name)) continue;
+    Picture truth = select(read_picture(name), {"R", "G", "B"});
     if (truth.width != image.width || truth.height != image.height)
       throw Error(fmt::format("--reference {}: is {}x{}, the frame {}x{}; use --size", name, truth.width, truth.height,
                               image.width, image.height));
     const Metrics m = compare(image, truth, false);
     out.back().relmse = m.relmse, out.back().relmse_trimmed = m.relmse_trimmed;
-    if (before.width > 0 && (before.width != image.width || before.height != image.height))
+    if (last.width > 0 && (last.width != image.width || last.height != image.height))
       throw Error(
           fmt::format("{}: is {}x{}, the frame before it {}x{}; flicker is of frames of one size: give --size, or "
                       "leave out --reference",
-                      path, image.width, image.height, before.width, before.height));
-    if (before.width > 0) out.back().flicker = flicker(before, image, reference_before, truth);
+                      path, image.width, image.height, last.width, last.height));
+    if (last.width > 0) out.back().flicker = flicker(last, image, last_truth, truth);
     before = std::move(image), reference_before = std::move(truth);
   }
   return out;

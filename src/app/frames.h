@@ -52,16 +52,20 @@ Stage set_up(Shooting& shooting, int frame, const Stage* before);
 /// "door=16.3  time=0.25"
 std::string describe(const Timeline& timeline, int frame);
 
+/// The image of a finished frame. Throws Error, which says what to do about a damaged one.
+Picture read_frame(const std::string& path);
+
 /// The newest carried fields in a folder that belong to this key and to no frame after the given one.
 std::optional<Carried> find_carried(const std::string& folder, const std::string& key, int last);
 
-/// The figures of all frames of the range that are there. reference: empty for none.
+/// The figures of all frames of the animation that are there. reference: empty for none; of what is missing there no
+/// error is known.
 std::vector<FrameFigures> measure(const FramePattern& pattern, const Timeline& timeline,
                                   const std::optional<FramePattern>& reference);
 
-/// Throws Error where ffmpeg is not installed.
-void require_ffmpeg();
-/// Makes a film of the PNG files of a range. Throws Error.
+/// Throws Error where the name is none for a film, or cannot be written, or ffmpeg is not installed.
+void check_video(const std::string& out);
+/// Makes a film of the PNG files of a range. Throws Error, and Interrupted.
 void make_video(const FramePattern& png, const FrameRange& frames, double fps, const std::string& out);
 
 }  // namespace ajar

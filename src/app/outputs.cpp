@@ -1,7 +1,6 @@
 #include "outputs.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -12,6 +11,9 @@
 #include "ajar/core/error.h"
 #include "ajar/report/account.h"
 #include "ajar/report/metrics.h"
+#include "apart.h"
+#include "progress.h"
+#include "say.h"
 
 namespace ajar {
 namespace {
@@ -62,10 +64,6 @@ void check_name(const RenderArguments& a) {
                             a.half ? "--half" : "--aov"));
 }
 
-struct Named {
-  std::string option, path;
-};
-
 void add(std::vector<Named>& list, const char* option, const std::string& path) {
   if (!path.empty()) list.push_back({option, path});
 }
@@ -91,12 +89,9 @@ std::vector<Named> read(const RenderArguments& a) {
 }
 
 // What goes on may be saved under its old name.
-void require_apart(const Named& output, const Named& other) {
-  if (output.option == "--checkpoint" && other.option == "--resume") return;
-  if (output.option == "--save-fields" && other.option == "--load-fields") return;
-  if (!is_same_file(output.path, other.path)) return;
-  throw Error(fmt::format("{} {}: is the same file as {} {}; name another", output.option, output.path, other.option,
-                          other.path));
+bool goes_on(const Named& output, const Named& input) {
+  return (output.option == "--checkpoint" && input.option == "--resume") ||
+         (output.option == "--save-fields" && input.option == "--load-fields");
 }
 
 }  // namespace
@@ -116,20 +111,24 @@ void Log::write(const RenderState& state, bool last) {
   file.close();
 }
 
-std::optional<Picture> read_reference(const RenderArguments& a, const Camera& camera) {
-  if (a.reference.empty()) return {};
-  if (a.log.empty()) throw Error("--reference: the error against it goes into the log; add --log FILE");
-  Picture picture = read_picture(a.reference);
+Picture read_reference(const std::string& path, const Camera& camera) {
+  Picture picture = read_picture(path);
   try {
     picture = select(picture, {"R", "G", "B"});
   } catch (const Error& error) {
-    throw Error(fmt::format("--reference {}: {}", a.reference, error.what()));
+    throw Error(fmt::format("--reference {}: {}", path, error.what()));
   }
-  require_comparable(picture, "--reference " + a.reference);
+  require_comparable(picture, "--reference " + path);
   if (picture.width != camera.crop_width || picture.height != camera.crop_height)
-    throw Error(fmt::format("--reference {}: is {}x{}, the render {}x{}; use --size", a.reference, picture.width,
+    throw Error(fmt::format("--reference {}: is {}x{}, the render {}x{}; use --size", path, picture.width,
                             picture.height, camera.crop_width, camera.crop_height));
   return picture;
+}
+
+std::optional<Picture> read_reference(const RenderArguments& a, const Camera& camera) {
+  if (a.reference.empty()) return {};
+  if (a.log.empty()) throw Error("--reference: the error against it goes into the log; add --log FILE");
+  return read_reference(a.reference, camera);
 }
 
 Log open_log(const RenderArguments& a, std::optional<Picture> reference) {
@@ -144,7 +143,7 @@ Log open_log(const RenderArguments& a, std::optional<Picture> reference) {
 
 void check_apart(const RenderArguments& a, const Scene& scene) {
   for (const Named& output : written(a))
-    for (const std::string& file : scene.files) require_apart(output, {"a file of the scene,", file});
+    for (const std::string& file : scene.files) require_apart(output, Named{"a file of the scene,", file});
 }
 
 void check_outputs(const RenderArguments& a) {
@@ -152,7 +151,8 @@ void check_outputs(const RenderArguments& a) {
   const std::vector<Named> outputs = written(a);
   for (size_t i = 0; i < outputs.size(); ++i) {
     for (size_t j = 0; j < i; ++j) require_apart(outputs[i], outputs[j]);
-    for (const Named& input : read(a)) require_apart(outputs[i], input);
+    for (const Named& input : read(a))
+      if (!goes_on(outputs[i], input)) require_apart(outputs[i], input);
   }
   for (const Named& output : outputs) check_file(output.path);
   if (!a.techniques.empty()) check_folder(a.techniques);
@@ -172,8 +172,8 @@ void write_image(const RenderArguments& a, const Scene& scene, const Accel& acce
   run.write_cpu = process_cpu_seconds() - cpu;
   write_record(a, run, state);
   if (a.quiet) return;
-  fmt::print("{}\n", a.out);
-  if (png_beside) fmt::print("{}\n", with_extension(a.out, ".png"));
+  say(stdout, "{}\n", a.out);
+  if (png_beside) say(stdout, "{}\n", with_extension(a.out, ".png"));
 }
 
 void Saver::save(const RenderState& state) {
@@ -182,8 +182,7 @@ void Saver::save(const RenderState& state) {
   try {
     save_checkpoint(path, key, state);
   } catch (const Error& error) {
-    const char* clear = isatty(STDERR_FILENO) ? "\r\033[K" : "";  // of the line of progress
-    if (!failed) std::fprintf(stderr, "%sajar: warning: %s; the render goes on\n", clear, error.what());
+    if (!failed) clear_line(), say(stderr, "ajar: warning: {}; the render goes on\n", error.what());
     failed = true;
   }
 }
@@ -194,7 +193,7 @@ void write_each(const std::vector<std::function<void()>>& writes) {
     try {
       write();
     } catch (const std::exception& error) {
-      if (failed) std::fprintf(stderr, "ajar: %s\n", failed->what());
+      if (failed) say(stderr, "ajar: {}\n", failed->what());
       failed = Error(error.what());
     }
   }

@@ -23,7 +23,9 @@ struct Log {
 
   void write(const RenderState& state, bool last);
 };
-/// The image to measure errors against, if there is to be one; throws Error unless it is fit for that.
+/// The image to measure errors against; throws Error unless it is fit for that.
+Picture read_reference(const std::string& path, const Camera&);
+/// The same, if there is to be one.
 std::optional<Picture> read_reference(const RenderArguments&, const Camera&);
 /// A log that goes on is added to.
 Log open_log(const RenderArguments&, std::optional<Picture> reference);

@@ -11,6 +11,7 @@
 #include "arguments.h"
 #include "commands.h"
 #include "planning.h"
+#include "say.h"
 #include "stop.h"
 
 namespace ajar {
@@ -38,9 +39,9 @@ void run_plan(const Arguments& a) {
       scene, accel, options, [](const RenderState&) { return !stop_asked(); }, plan);
   if (stop_asked()) throw Interrupted{"interrupted in the pilot; nothing is planned"};
   if (const double least = least_budget(scene.camera); !scene.lights.empty() && options.cpu_seconds < least)
-    fmt::print(stderr, "ajar: note: --cpu-time {} is too short to learn anything; give {:.0f}s or more\n", a.cpu_time,
-               std::ceil(least));
-  fmt::print("{}", a.json ? to_json(plan).dump(2) + "\n" : describe(plan));
+    say(stderr, "ajar: note: --cpu-time {} is too short to learn anything; give {:.0f}s or more\n", a.cpu_time,
+        std::ceil(least));
+  say(stdout, "{}", a.json ? to_json(plan).dump(2) + "\n" : describe(plan));
 }
 
 }  // namespace

@@ -13,14 +13,15 @@ double share_done(const RenderOptions& o, const RenderState& state, const Progre
   double share = 0;
   if (o.seconds > 0) share = std::max(share, state.stats.seconds / o.seconds);
   if (o.cpu_seconds > 0) share = std::max(share, state.stats.cpu_seconds / o.cpu_seconds);
-  if (o.noise > 0 && p.error_spp > 0) share = std::max(share, o.noise / p.error * spp_of(state.film) / p.error_spp);
+  if (o.noise > 0 && p.error_spp > 0)
+    share = std::max(share, o.noise / p.error.relmse * spp_of(state.film) / p.error_spp);
   if (const uint32_t most = most_passes(o); most > 0) share = std::max(share, spp_of(state.film) / most);
   return std::clamp(share, 0.0, 1.0);
 }
 
 void estimate(Progress& p, const RenderState& state) {
   const double begin = wall_seconds();
-  p.error = estimated_error(state.film);
+  p.error = estimate_error(state.film);
   p.error_spp = spp_of(state.film);
   p.error_next = state.stats.seconds + std::max(1.0, 20 * (wall_seconds() - begin));
 }
@@ -32,12 +33,17 @@ void print(const Progress& progress, double share, const RenderState& state, boo
   std::string line = fmt::format("[{:#<{}}{:.<{}}] {:5.1f} spp  {} elapsed", "", full, "", width - full,
                                  spp_of(state.film), clock_text(elapsed));
   if (!last && share > 0) line += fmt::format("  {} left", clock_text(elapsed * (1 - share) / share));
-  if (progress.error < infinity) line += fmt::format("  relMSE ~ {:.3g}", progress.error);
+  if (const ErrorEstimate& e = progress.error; e.relmse < infinity)  // a single firefly may be most of the second
+    line += fmt::format("  relMSE ~ {:.3g} ({:.3g} of all)", e.relmse_trimmed, e.relmse);
   std::fprintf(stderr, progress.terminal ? (last ? "\r%s\033[K\n" : "\r%s\033[K") : "%s\n", line.c_str());
   std::fflush(stderr);
 }
 
 }  // namespace
+
+void clear_line() {
+  if (isatty(STDERR_FILENO)) std::fputs("\r\033[K", stderr);
+}
 
 std::string clock_text(double s) {
   if (s < 100) return fmt::format("{:.1f} s", s);

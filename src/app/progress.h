@@ -9,14 +9,16 @@
 namespace ajar {
 
 struct Progress {
-  bool shown = false;       ///< nothing is printed unless
-  bool terminal = false;    ///< stderr is one: the line is rewritten in place
-  double last = -1;         ///< render seconds of the last line
-  double error = infinity;  ///< last estimate; costs a pass over the film, so it is made anew only now and then
-  double error_spp = 0;     ///< it is of so many samples
-  double error_next = 1;    ///< render seconds from which it is made anew
+  bool shown = false;     ///< nothing is printed unless
+  bool terminal = false;  ///< stderr is one: the line is rewritten in place
+  double last = -1;       ///< render seconds of the last line
+  ErrorEstimate error;    ///< the last one; costs a pass over the film, so it is made anew only now and then
+  double error_spp = 0;   ///< it is of so many samples
+  double error_next = 1;  ///< render seconds from which it is made anew
 };
 
+/// Takes the line away where stderr is a terminal, so that another can stand in its place.
+void clear_line();
 /// "12.3 s", "4:05", "1:02:03".
 std::string clock_text(double seconds);
 Progress make_progress(bool quiet);

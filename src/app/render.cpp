@@ -14,6 +14,7 @@
 #include "outputs.h"
 #include "progress.h"
 #include "render_options.h"
+#include "say.h"
 #include "stop.h"
 #include "summary.h"
 
@@ -27,7 +28,7 @@ constexpr double training_share = 0.5;
 void hold_against(const RenderArguments& a, const Scene& scene, const Accel& accel, Run& run,
                   const RenderState& state) {
   if (a.versus == run.options.integrator) {
-    fmt::print(stderr, "ajar: note: {} was planned; there is nothing to hold it against\n", a.versus);
+    say(stderr, "ajar: note: {} was planned; there is nothing to hold it against\n", a.versus);
     return;
   }
   const Versus versus =
@@ -36,7 +37,7 @@ void hold_against(const RenderArguments& a, const Scene& scene, const Accel& acc
     throw Interrupted{fmt::format("interrupted; {} is whole, but what {} leaves is not known", a.out, a.versus)};
   run.versus = versus;
   write_record(a, run, state);
-  if (!a.quiet) fmt::print("{}\n", describe(run.versus, state));
+  if (!a.quiet) say(stdout, "{}\n", describe(run.versus, state));
 }
 
 void plan_run(const RenderArguments& a, const Scene& scene, Run& run) {
@@ -44,11 +45,11 @@ void plan_run(const RenderArguments& a, const Scene& scene, Run& run) {
   const std::string& chosen = run.options.integrator = run.plan.integrator;
   run.options.learn_lights &= !is_guided(chosen);
   run.options.techniques &= has_strategies(chosen);
-  if (!a.quiet) fmt::print(stderr, "ajar: note: {} is used; ajar plan says why\n", chosen);
+  if (!a.quiet) say(stderr, "ajar: note: {} is used; ajar plan says why\n", chosen);
   if (!is_guided(chosen) && !a.save_fields.empty())
-    fmt::print(stderr, "ajar: note: nothing is learned, {} is not written\n", a.save_fields);
+    say(stderr, "ajar: note: nothing is learned, {} is not written\n", a.save_fields);
   if (!a.techniques.empty() && !run.options.techniques)
-    fmt::print(stderr, "ajar: note: {} has no strategies to tell apart, {} is not written\n", chosen, a.techniques);
+    say(stderr, "ajar: note: {} has no strategies to tell apart, {} is not written\n", chosen, a.techniques);
 }
 
 void check_time(double at, const Scene& scene) {
@@ -66,20 +67,19 @@ std::string interruption(const RenderArguments& a, const Film& film) {
 void warn(const Run& run, const RenderState& state) {
   const bool young = is_guided(run.options.integrator) && state.film.dropped == 0;
   if (young && traced_one_in(state.learning, state.film) > 1)
-    fmt::print(stderr,
-               "ajar: warning: most pixels have no sample: the first four passes of a guided render teach it, and "
-               "trace few pixels; give it more time, or --spp 4 or more\n");
+    say(stderr,
+        "ajar: warning: most pixels have no sample: the first four passes of a guided render teach it, and "
+        "trace few pixels; give it more time, or --spp 4 or more\n");
   if (state.stats.rejected == 0) return;
-  fmt::print(stderr, "ajar: warning: {} values were not finite or negative and were left out", state.stats.rejected);
-  for (const std::string& r : state.stats.replay) fmt::print(stderr, "; {}", r);
-  fmt::print(stderr, "\n");
+  say(stderr, "ajar: warning: {} values were not finite or negative and were left out", state.stats.rejected);
+  for (const std::string& r : state.stats.replay) say(stderr, "; {}", r);
+  say(stderr, "\n");
 }
 
 void note_plain(const RenderArguments& a, const Run& run, const RenderState& state) {
   const Plain& p = state.plain;
   if (a.quiet || !p.taken || !may_leave_out(run.options) || state.film.passes <= p.passes) return;
-  fmt::print(
-      stderr,
+  say(stderr,
       "ajar: note: path tracing took over from {} after {} passes, since light is easy to find here (error after "
       "equal time: {:.2g} times); --plan all goes on guiding\n",
       run.options.integrator, p.passes, p.ratio);
@@ -93,8 +93,8 @@ RenderState begin(const RenderArguments& a, Scene& scene, const Run& run) {
     if (learns(run.options) && fit_lights(scene.light_tree, learn_options(run.options), state.learning.fields))
       throw Error(a.resume + ": what it learned of lights is of another scene; start again without --resume");
     if (run.options.spp > 0 && state.film.passes > run.options.spp && !a.quiet)
-      fmt::print(stderr, "ajar: note: {} holds {} passes, more than --spp {}; they are all in the image\n", a.resume,
-                 state.film.passes, run.options.spp);
+      say(stderr, "ajar: note: {} holds {} passes, more than --spp {}; they are all in the image\n", a.resume,
+          state.film.passes, run.options.spp);
   }
   if (!a.load_fields.empty() && is_guided(run.options.integrator)) {
     StoredFields stored = load_fields(a.load_fields, scene_key(scene));
@@ -162,7 +162,7 @@ void run_render(RenderArguments a) {
   run.options = render_options(a, scene, run.planned);
   std::optional<Picture> reference = read_reference(a, scene.camera);
   for (const std::string& n : scene.notes)
-    if (!a.quiet) fmt::print(stderr, "ajar: note: {}\n", n);
+    if (!a.quiet) say(stderr, "ajar: note: {}\n", n);
   run.threads = a.threads > 0 ? a.threads : int(std::thread::hardware_concurrency());
   run.triangles = count_triangles(scene);
   const double wall1 = wall_seconds(), cpu1 = process_cpu_seconds();

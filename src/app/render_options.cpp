@@ -90,23 +90,22 @@ std::vector<std::string> split(const std::string& list) {
   return out;
 }
 
-bool lists_parts(const std::string& plan) { return !plan.empty() && plan != "all" && plan != "auto"; }
+bool lists_parts(const RenderArguments& a) {
+  return a.integrator.empty() && !a.plan.empty() && a.plan != "all" && a.plan != "auto";
+}
 
 // What the user names, else what the plan's parts make, else what the scene names.
-void choose_integrator(const RenderArguments& a, Scene& scene, RenderOptions& o) {
+void choose_integrator(const RenderArguments& a, const Scene& scene, RenderOptions& o) {
   if (!a.integrator.empty()) {
     check_integrator(a.integrator);
     o.integrator = a.integrator;
-  } else if (lists_parts(a.plan)) {
+  } else if (lists_parts(a)) {
     if (a.guide != "both") throw Error("--guide: the parts of --plan say what is guided; leave it out");
     apply_parts(split(a.plan), o);
   } else if (a.plan == "all") {
     o.integrator = "guided-bdpt";
   } else if (is_integrator(scene.hints.integrator)) {
     o.integrator = scene.hints.integrator;
-  } else if (!scene.hints.integrator.empty()) {
-    scene.notes.push_back(fmt::format("{}: integrator {} is not in this version; {} is used", a.scene,
-                                      scene.hints.integrator, o.integrator));
   }
 }
 
@@ -122,16 +121,17 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
   c->add_option("--integrator", a->integrator,
                 "path, bdpt, light, guided-path, guided-bdpt, vcm, guided-vcm, photon, vpl or plain-vpl (default: the "
                 "scene's, else what the plan says)");
-  c->add_option("--plan", a->plan,
-                "what to use: auto (guided-bdpt where there is time to learn, until path tracing turns out to be "
-                "enough), all (to the end: path tracing never takes over from what "
-                "guides), none, or a list of light-subpaths, camera-guiding, light-guiding (default: auto where no "
-                "integrator is named)");
+  c->add_option(
+      "--plan", a->plan,
+      "what to use: auto (guided-bdpt where there is time to learn, until path tracing turns out to be "
+      "enough), all (to the end: path tracing never takes over from what "
+      "guides), none (path tracing, or the integrator that is named, to the end), or a list of light-subpaths, "
+      "camera-guiding, light-guiding (default: auto where no integrator is named)");
   c->add_option("--spp", a->spp,
                 "samples per pixel; of --spp, --time, --cpu-time and --noise the first that is reached ends the render "
                 "(default: the scene's spp, else 64)")
       ->check(whole(1, 1 << 30));
-  c->add_option("--time", a->time, "wall time to render: 90s, 5m, 1h");
+  c->add_option("--time", a->time, "wall time to render: 90s, 5m, 1h; with --resume, what was before counts");
   c->add_option("--cpu-time", a->cpu_time, "CPU time of all threads to render");
   c->add_option("--noise", a->noise, "relMSE to stop at, as estimated without a reference: 0.01");
   c->add_option("--seed", a->seed, "another seed, other noise")->check(whole(0, ~uint64_t(0)));
@@ -156,7 +156,7 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
       "--techniques", a->techniques,
       "folder for an image of every strategy (s, t) with s + t <= 11, weighted and raw; those there are removed");
   c->add_option("--checkpoint", a->checkpoint, "file to save the state to, every minute and at the end");
-  c->add_option("--resume", a->resume, "checkpoint to go on from");
+  c->add_option("--resume", a->resume, "checkpoint to go on from; its time and samples count in all limits");
   c->add_option("--guide", a->guide, "which subpaths the learned fields guide: both, camera or light")
       ->check(CLI::IsMember({"both", "camera", "light"}));
   c->add_option("--field-memory", a->field_memory, "memory that all that is learned may take: 512K, 8M (default), 1G");
@@ -195,6 +195,7 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
 
 bool plans(const RenderArguments& a, const Scene& scene) {
   if (a.plan.empty()) return a.integrator.empty() && scene.hints.integrator.empty() && a.resume.empty();
+  if (!a.integrator.empty() && a.plan == "none") return false;
   if (!a.integrator.empty() && a.plan != "all")
     throw Error("--plan: chooses the integrator; leave out either this or --integrator, or write --plan all");
   if (!a.integrator.empty() && !is_guided(a.integrator))
@@ -205,8 +206,10 @@ bool plans(const RenderArguments& a, const Scene& scene) {
   return true;
 }
 
+std::string usual_light_choice(const std::string& integrator) { return is_guided(integrator) ? "learned" : "tree"; }
+
 std::string light_choice_of(const RenderArguments& a, const std::string& integrator) {
-  return !a.light_choice.empty() ? a.light_choice : is_guided(integrator) ? "learned" : "tree";
+  return a.light_choice.empty() ? usual_light_choice(integrator) : a.light_choice;
 }
 
 RenderOptions render_options(const RenderArguments& a, Scene& scene, bool planned) {
@@ -230,7 +233,7 @@ RenderOptions render_options(const RenderArguments& a, Scene& scene, bool planne
   check_next_event(o, scene);
   const Guided guided = o.learn.guided;
   o.learn = learn_options(a, o.integrator, planned || is_guided(o.integrator));
-  if (lists_parts(a.plan)) o.learn.guided = guided;
+  if (lists_parts(a)) o.learn.guided = guided;
   o.learn_lights = a.light_choice == "learned" && !is_guided(o.integrator);
   if (o.learn_lights && o.integrator != "path" && o.integrator != "bdpt")
     throw Error(fmt::format("--light-choice learned: {} does no next-event estimation; leave it out", o.integrator));

@@ -31,6 +31,8 @@ struct RenderArguments {
 void add_options(CLI::App& command, RenderArguments& arguments);
 /// Whether the plan chooses: where the user asks for it, or where neither he nor the scene names an integrator.
 bool plans(const RenderArguments&, const Scene&);
+/// Where the user says nothing.
+std::string usual_light_choice(const std::string& integrator);
 /// "uniform", "power", "tree" or "learned".
 std::string light_choice_of(const RenderArguments&, const std::string& integrator);
 /// Sets the scene's choice of lights, too, and leaves notes there. Throws where options do not go together.

@@ -8,6 +8,7 @@
 
 #include "ajar/report/page.h"
 #include "commands.h"
+#include "say.h"
 
 namespace ajar {
 
@@ -17,7 +18,7 @@ void add_report(CLI::App& app) {
   command->add_option("folder", *folder, "Folder that ajar bench wrote")->required();
   command->callback([folder] {
     write_report(read_results(*folder), *folder);
-    fmt::print("{}\n", (std::filesystem::path(*folder) / "report.html").string());
+    say(stdout, "{}\n", (std::filesystem::path(*folder) / "report.html").string());
   });
 }
 

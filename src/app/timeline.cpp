@@ -180,7 +180,8 @@ Keyframes read_keyframes(const std::string& path) {
       out.frames = value;
     } else if (name == "parameters" && value.is_object()) {
       for (const auto& [parameter, track] : value.items())
-        out.tracks[parameter] = parse_track(track, fmt::format("{}: parameter \"{}\"", path, parameter));
+        out.tracks[parameter] = parse_track(track, fmt::format("{}: parameter \"{}\"", path, parameter)),
+        out.tracks[parameter].file = path;
     } else {
       throw Error(fmt::format("{}: \"{}\" is unknown, or of the wrong kind; {}", path, name, how));
     }

@@ -22,6 +22,7 @@ struct Track {
   };
   std::vector<Key> keys;  ///< in the order of their frames; at least one
   bool smooth = false;    ///< slows down towards keys where it turns or rests; else linear
+  std::string file;       ///< of keyframes that it is read from; empty: the user typed it
 };
 
 struct Timeline {

@@ -5,12 +5,19 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <thread>
 
 #include "ajar/core/error.h"
+#include "ajar/core/files.h"
+#include "arguments.h"
 #include "frames.h"
+#include "stop.h"
 
 extern char** environ;
 
@@ -32,30 +39,55 @@ std::string find_program(const std::string& name) {
   return {};
 }
 
-// Its exit code; -1 where it did not come to one.
-int run(const std::string& program, const std::vector<std::string>& arguments) {
+// What this program ignores (guard_streams) another one need not.
+pid_t start(const std::string& program, const std::vector<std::string>& arguments) {
   std::vector<char*> argv = {const_cast<char*>(program.c_str())};
   for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
   argv.push_back(nullptr);
-  pid_t child = 0;
-  if (posix_spawn(&child, program.c_str(), nullptr, nullptr, argv.data(), environ) != 0) return -1;
+  sigset_t usual;
+  sigemptyset(&usual);
+  sigaddset(&usual, SIGPIPE), sigaddset(&usual, SIGXFSZ);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setsigdefault(&attributes, &usual);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
+  pid_t child = -1;
+  const bool started = posix_spawn(&child, program.c_str(), nullptr, &attributes, argv.data(), environ) == 0;
+  posix_spawnattr_destroy(&attributes);
+  return started ? child : -1;
+}
+
+// Its exit code; -1 where it did not come to one. It ends early where the user wants an end.
+int run(const std::string& program, const std::vector<std::string>& arguments) {
+  const pid_t child = start(program, arguments);
+  if (child < 0) return -1;
   int status = 0;
-  while (waitpid(child, &status, 0) < 0)
-    if (errno != EINTR) return -1;
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  for (bool told = false;;) {
+    const pid_t ended = waitpid(child, &status, WNOHANG);
+    if (ended == child) return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    if (ended < 0 && errno != EINTR) return -1;
+    if (stop_asked() && !told) told = kill(child, SIGTERM) == 0;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
 }
 
 }  // namespace
 
-void require_ffmpeg() {
+void check_video(const std::string& out) {
+  static constexpr const char* known[] = {".mp4", ".mov", ".mkv", ".webm", ".gif",  ".avi", ".m4v",
+                                          ".mpg", ".ogv", ".wmv", ".flv",  ".mpeg", ".ts"};
+  if (std::find(std::begin(known), std::end(known), extension_of(out)) == std::end(known))
+    throw Error(fmt::format("--video {}: is no name for a film; write NAME.mp4, or one with {}", out,
+                            fmt::join(std::begin(known) + 1, std::end(known), ", ")));
+  check_file(out);
   if (find_program("ffmpeg").empty())
     throw Error("--video: ffmpeg is not installed (Debian: apt-get install ffmpeg); install it, or leave --video out");
 }
 
 void make_video(const FramePattern& png, const FrameRange& frames, double fps, const std::string& out) {
-  require_ffmpeg();
   // The name goes on where ffmpeg reads the kind of film from: written aside and renamed, as all files are.
-  const fs::path aside = fs::path(out).replace_extension(".part" + fs::path(out).extension().string());
+  const fs::path aside =
+      fs::path(out).replace_extension(fmt::format(".tmp{}{}", getpid(), fs::path(out).extension().string()));
   const std::string names = fmt::format("{}%0{}d{}", png.before, std::max(png.digits, 1), png.after);
   const int status =
       run(find_program("ffmpeg"),
@@ -66,6 +98,7 @@ void make_video(const FramePattern& png, const FrameRange& frames, double fps, c
   if (status == 0) fs::rename(aside, out, error);
   if (status == 0 && !error) return;
   fs::remove(aside, error);
+  if (stop_asked()) throw Interrupted{fmt::format("interrupted; {} is not made, but all frames are there", out)};
   throw Error(fmt::format("--video {}: ffmpeg failed; the frames are there as {}", out, names));
 }
 

@@ -43,7 +43,10 @@ std::string difference(std::string_view there, std::string_view here) {
   const auto last = std::mismatch(there.rbegin(), there.rend(), here.rbegin(), here.rend()).first;
   const size_t comma = there.find(',', size_t(last.base() - there.begin()));
   take(0, comma == there.npos ? 0 : there.size() - comma);
-  return fmt::format("there {}, here {}", there, here);
+  std::string text = fmt::format("there {}, here {}", there, here);
+  for (char& c : text)  // of a damaged file; terminals obey some
+    if (const auto byte = static_cast<unsigned char>(c); byte < 0x20 || byte == 0x7f) c = '?';
+  return text;
 }
 
 void Writer::bytes(const void* data, size_t n) {

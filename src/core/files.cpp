@@ -24,9 +24,10 @@ const char* cure(int error) {
     case EPERM:
     case EROFS:
       return "choose a folder that you may write to";
+    case EFBIG:
+      return "free some space, raise the limit on the size of files (ulimit -f), or choose another disk";
     case ENOSPC:
     case EDQUOT:
-    case EFBIG:
       return "free some space, or choose another disk";
     case EISDIR:
       return "name a file, not a folder";

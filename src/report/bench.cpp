@@ -66,7 +66,8 @@ bool watch(Bench& bench, const Stand& stand, const Racer& racer, double done) {
   if (!bench.options.watch) return true;
   const double left = done > 0 ? (wall_seconds() - bench.start) / done * (bench.units - done) : infinity;
   const std::string what = fmt::format("{} seed {} {}", stand.scene->name, racer.options.seed, racer.method->name);
-  bench.stopped = !bench.options.watch({what, done / bench.units, left});
+  const double share = bench.units > 0 ? done / bench.units : 1;  // all runs may be there already
+  bench.stopped = !bench.options.watch({what, share, left});
   return !bench.stopped;
 }
 
@@ -148,7 +149,7 @@ void make_techniques(Bench& bench, const Stand& stand, const LoadedScene& loaded
   for (const Method& method : bench.suite.methods) {
     const fs::path folder = bench.options.folder / "techniques" / stand.scene->name / method.name;
     std::error_code unreadable;
-    if (fs::exists(folder, unreadable) || bench.stopped) continue;
+    if (!has_strategies(method.options.integrator) || fs::exists(folder, unreadable) || bench.stopped) continue;
     Racer racer = make_racer(method, *stand.scene, loaded, bench.suite.seeds[0], bench.options.threads);
     racer.options = with_budget(racer.options, with_amount(all, all.spp > 0 ? std::max(amount, 1.0) : amount));
     racer.options.techniques = true;

@@ -210,7 +210,8 @@ ZTest z_test(const Picture& image, const Picture& reference) {
             levels);
   // Bonferroni: level k may use the share 1 / ((k + 1)(k + 2)) of the significance (they sum to less than 1), half of
   // it the whole image; within a level all regions and channels alike.
-  test.p = 2;
+  test.p = 2;  // more than any probability: where nothing stands out, the region is the whole image
+  test.width = image.width, test.height = image.height;
   for (size_t k = 0; k < levels.size(); ++k) {
     const double p = levels[k].least_p * levels[k].count * double((k + 1) * (k + 2));
     if (p >= test.p) continue;

@@ -2,16 +2,11 @@
 // it says where it cannot.
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
-#include "ajar/core/error.h"
-#include "ajar/film/picture.h"
-#include "app/commands.h"
+#include "animate_stage.h"
 #include "app/frames.h"
 #include "app/timeline.h"
 
@@ -19,18 +14,9 @@ namespace ajar {
 namespace {
 
 namespace fs = std::filesystem;
+using kit::error_of;
 
 using Numbers = std::vector<double>;
-
-std::string error_of(const std::function<void()>& f) {
-  try {
-    f();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
-}
-#define EXPECT_SAYS(text, words) EXPECT_NE((text).find(words), std::string::npos) << "it says: \"" << (text) << '"'
 
 TEST(Timeline, SweepsGoFromEndToEnd) {
   const Timeline t = make_timeline("5", {"door=10..50", "sun=0 4..1 0..2 4", "tint=red", "there=0..1..0"}, "", "");
@@ -97,52 +83,6 @@ TEST(Timeline, WrongOnesAreErrors) {
   EXPECT_SAYS(error_of([] { make_timeline("4", {"x=1..2", "x=3"}, "", ""); }), "given twice");
   EXPECT_SAYS(error_of([] { make_timeline("4", {}, "", "soon"); }), "--at soon");
 }
-
-struct Animate : testing::Test {
-  fs::path folder;
-
-  void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder = fs::path(testing::TempDir()) / ("ajar animate " + std::string(info->name()) + std::to_string(::getpid()));
-    fs::create_directories(folder);
-    write("room.xml", R"(<scene version="3.0.0">
-      <default name="door" value="1"/>
-      <sensor type="perspective"><float name="fov" value="60"/>
-        <transform name="to_world"><lookat origin="0, 0, 3.5" target="0, 0, 0" up="0, 1, 0"/></transform>
-        <film type="hdrfilm"><integer name="width" value="16"/><integer name="height" value="12"/>
-          <rfilter type="box"/></film></sensor>
-      <shape type="cube"><transform name="to_world"><scale value="-4"/></transform></shape>
-      <shape type="rectangle"><transform name="to_world"><scale value="0.6"/><translate x="$door"/></transform></shape>
-      <shape type="sphere"><point name="center" x="-1.5" y="1.5" z="1"/><float name="radius" value="0.3"/>
-        <emitter type="area"><rgb name="radiance" value="20, 18, 15"/></emitter></shape>
-    </scene>)");
-  }
-  void TearDown() override { fs::remove_all(folder); }
-
-  void write(const std::string& name, const std::string& text) const { std::ofstream(folder / name) << text; }
-  std::string in(const std::string& name) const { return (folder / name).string(); }
-
-  void run(const std::string& frames, const std::string& out, std::vector<std::string> more = {}) const {
-    CLI::App app;
-    add_animate(app);
-    std::vector<std::string> arguments = {"animate", in("room.xml"),          "-q", "--frames",      frames,
-                                          "-o",      in(out) + "/f_%02d.exr", "-D", "door=0.2..1.4", "--threads",
-                                          "1"};
-    const auto otherwise = [&](const char* option, const char* value) {
-      if (std::find(more.begin(), more.end(), option) == more.end()) more.insert(more.end(), {option, value});
-    };
-    otherwise("--spp", "2"), otherwise("--integrator", "guided-bdpt");
-    if (std::find(more.begin(), more.end(), "path") == more.end()) otherwise("--teach", "1");
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    std::reverse(arguments.begin(), arguments.end());
-    app.parse(arguments);
-  }
-  std::vector<float> pixels(const std::string& name) const { return read_picture(in(name)).pixels; }
-  nlohmann::json figures(const std::string& out) const {
-    std::ifstream file(in(out) + "/animation.json");
-    return nlohmann::json::parse(file);
-  }
-};
 
 TEST_F(Animate, FramesDoNotDependOnHowTheWorkIsSplit) {
   run("4", "whole");
@@ -276,8 +216,9 @@ TEST_F(Animate, MeasuresErrorAndFlicker) {
   EXPECT_GT(j["mean"]["flicker"].get<double>(), 0);
   EXPECT_TRUE(j["frames"][0]["flicker"].is_null());
   EXPECT_FALSE(j["frames"][1]["flicker"].is_null());
-  run("3", "reference", {"--integrator", "path", "--spp", "64", "--reference", in("reference/f_%02d.exr")});
-  EXPECT_EQ(figures("reference")["mean"]["flicker"], 0);
+  fs::copy(in("reference"), in("copy"));
+  run("3", "copy", {"--integrator", "path", "--spp", "64", "--reference", in("reference/f_%02d.exr")});
+  EXPECT_EQ(figures("copy")["mean"]["flicker"], 0);
   EXPECT_TRUE(fs::exists(in("out/animation.csv")));
   EXPECT_TRUE(fs::exists(in("out/animation.svg")));
   EXPECT_SAYS(error_of([&] { run("4", "more", {"--reference", in("reference/f_%02d.exr")}); }), "there is no");

@@ -8,8 +8,10 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "app/commands.h"
+#include "app/progress.h"
 #include "kit/files.h"
 
 namespace ajar {
@@ -230,6 +232,52 @@ TEST_F(Outputs, PartsOfAPlanAreCheckedAsAnIntegratorIs) {
   EXPECT_EQ(said({"--plan", "light-subpaths,camera-guiding", "--save-fields", "f"}), "");
   testing::internal::GetCapturedStdout();
   EXPECT_TRUE(fs::exists("f"));
+}
+
+// The error of all pixels, which a single firefly may rule, stands beside that of the rest.
+TEST(Progress, TellsTheErrorWithoutTheWorstPixels) {
+  RenderState state;
+  state.film = make_film({.width = 64, .height = 64, .crop_width = 64, .crop_height = 64}, {}, false);
+  Progress p;
+  p.shown = true;
+  p.error = {75.8, 0.017}, p.error_next = infinity;
+  testing::internal::CaptureStderr();
+  show(p, {.spp = 8}, state);
+  show(p, {.spp = 8}, state);
+  p.terminal = true, p.last = 0, state.stats.seconds = 1;
+  show(p, {.spp = 8}, state);
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find("relMSE ~ 0.017 (75.8 of all)"), std::string::npos) << said;
+}
+
+// The loader, which comes before the integrators, knows their names as well.
+TEST_F(Outputs, AScenesIntegratorIsFoundByEitherSpelling) {
+  const auto load = [](const std::string& integrator) {
+    return load_scene_text(
+        "<scene version=\"3.0.0\"><integrator type=\"" + integrator +
+            "\"/><sensor type=\"perspective\"/><emitter type=\"constant\"/><shape type=\"sphere\"/></scene>",
+        ".", "text", {});
+  };
+  for (std::string name : integrator_names()) {
+    const std::string right = name;
+    std::replace(name.begin(), name.end(), '-', '_');
+    for (const std::string& spelling : {right, name}) {
+      const Scene scene = load(spelling);
+      EXPECT_EQ(scene.hints.integrator, right);
+      EXPECT_TRUE(scene.notes.empty()) << spelling << ": " << scene.notes[0];
+    }
+  }
+  const Scene other = load("metropolis");
+  EXPECT_EQ(other.notes.size(), 1u);
+  EXPECT_TRUE(plans({}, other)) << "as if none were named";
+  EXPECT_FALSE(plans({}, load("bdpt")));
+}
+
+TEST_F(Outputs, NoPlanGoesWithAnyIntegrator) {
+  run({"--plan", "none", "--integrator", "guided-bdpt"});
+  const auto options = nlohmann::json::parse(kit::bytes_of("a.json"))["options"];
+  EXPECT_EQ(options["integrator"], "guided-bdpt");
+  EXPECT_EQ(options["leaves_out"], false);
 }
 
 TEST(Versus, OfOnePassNoErrorIsTold) {

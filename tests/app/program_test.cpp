@@ -79,6 +79,58 @@ TEST_F(Program, InterruptedPilotsPlanNothing) {
   EXPECT_EQ(run(after_a_while("\"$ajar\" animate box.xml --frames 2 --spp 100000000 -q -o f/f_%d.exr")), 143) << said();
 }
 
+// Ctrl-C in a pipe ends the reader first.
+TEST_F(Program, WhatIsDoneIsKeptWhereNobodyReads) {
+  const std::string endless =
+      "\"$ajar\" render box.xml --integrator path --spp 1000000000 --log log -o a.exr --checkpoint ck --size 8x8";
+  run("{ " + stopped(endless, "log", "INT") + "; echo $? >code; } 2>&1 | true");
+  EXPECT_EQ(kit::bytes_of(folder / "code"), "130\n");
+  for (const char* name : {"a.exr", "a.json", "ck"}) EXPECT_TRUE(is_there(name)) << name;
+  EXPECT_EQ(run("{ sleep 0.2; \"$ajar\" render --help; echo $? >code; } | true"), 0);
+  EXPECT_EQ(kit::bytes_of(folder / "code"), "141\n") << "as shells have it, without a word";
+  EXPECT_EQ(said(), "");
+}
+
+TEST_F(Program, AStreamThatIsClosedIsNoFile) {
+  const std::string render = "\"$ajar\" render box.xml --integrator path --spp 4 --log log -o a.exr --size 8x8 ";
+  for (const char* closed : {"2>&-", ">&- 2>&-", "<&- >&- 2>&-"}) {
+    EXPECT_EQ(run(render + closed), 0) << closed;
+    const std::string log = kit::bytes_of(folder / "log");
+    EXPECT_EQ(log[0], '{') << log;
+    EXPECT_EQ(log.find("spp  "), log.npos) << log;
+    EXPECT_TRUE(log.ends_with("}\n")) << log;
+  }
+}
+
+TEST_F(Program, AFileThatGrowsTooLargeIsAnError) {
+  const std::string render = "\"$ajar\" render box.xml --integrator path --spp 1 -q -o there/a.exr --size 64x64";
+  EXPECT_EQ(run("(ulimit -f 4; " + render + ")"), 2) << said();
+  EXPECT_NE(said().find("there/a.exr: cannot be written (File too large); free some space, raise the limit"),
+            std::string::npos)
+      << said();
+  EXPECT_TRUE(fs::is_empty(folder / "there"));
+}
+
+TEST_F(Program, FilmsThatAreInterruptedSaySo) {
+  std::ofstream(folder / "ffmpeg") << "#!/bin/sh\nfor last; do :; done; echo >$last; kill -INT $PPID; exec sleep 60\n";
+  fs::permissions(folder / "ffmpeg", fs::perms::all);
+  const std::string animate = "PATH=$PWD:$PATH \"$ajar\" animate box.xml --integrator path --frames 2 --spp 1 ";
+  EXPECT_EQ(run(animate + "-o there/f_%d.exr --video film.mp4" + small), 130);
+  EXPECT_NE(said().find("ajar: interrupted; film.mp4 is not made"), std::string::npos) << said();
+  EXPECT_TRUE(is_there("there/animation.json"));
+  for (const auto& entry : fs::directory_iterator(folder)) EXPECT_NE(entry.path().extension(), ".mp4") << entry.path();
+}
+
+TEST_F(Program, MistypedOptionsAreToldFirst) {
+  for (const auto& [words, says] : {std::pair{"render --foo", "ajar: --foo: there is no such option; see ajar render"},
+                                    {"--foo", "ajar: --foo: there is no such option; see ajar --help"},
+                                    {"render --fo box.xml", "ajar: --fo: there is no such option"},
+                                    {"render box.xml --time 5s --time 6s", "ajar: --time: given twice; leave one"}}) {
+    EXPECT_EQ(run("\"$ajar\" " + std::string(words)), 2) << words;
+    EXPECT_EQ(said().find(says), 0u) << words << ": " << said();
+  }
+}
+
 TEST_F(Program, WordsThatAreNoCommandAreNamed) {
   EXPECT_EQ(run("\"$ajar\" rendr box.xml"), 2);
   EXPECT_EQ(said().find("ajar: rendr: there is no such command; known are render, "), 0u) << said();

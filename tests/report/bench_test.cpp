@@ -375,6 +375,14 @@ TEST_F(Bench, TechniquesOnRequest) {
     found |= t["s"] == 1 && t["t"] == 2;
   }
   EXPECT_TRUE(found);
+  std::vector<double> shares;
+  options.watch = [&](const BenchProgress& p) { return shares.push_back(p.share), true; };
+  run(json);
+  EXPECT_TRUE(shares.empty()) << "nothing is left to do, of path tracing neither, which has no strategies";
+  fs::remove_all(options.folder / "techniques/s/b");
+  run(json);
+  EXPECT_FALSE(shares.empty());
+  for (const double share : shares) EXPECT_EQ(share, 1) << "all runs are there";
 }
 
 }  // namespace

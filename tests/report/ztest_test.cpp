@@ -136,6 +136,14 @@ TEST(ZTest, NoVarianceAndNoDifferenceIsNoEvidence) {
       << "different without any noise";
 }
 
+TEST(ZTest, WhereNothingStandsOutTheRegionIsTheWholeImage) {
+  Picture image{1, 1, {"R", "G", "B", "Variance.R", "Variance.G", "Variance.B"}, {1, 1, 1, 1, 1, 1}};
+  const ZTest test = z_test(image, {1, 1, {"R", "G", "B"}, {1, 1, 1}});
+  EXPECT_EQ(test.p, 1);
+  EXPECT_EQ(test.width, 1);
+  EXPECT_EQ(test.height, 1);
+}
+
 TEST(ZTest, PixelsThatMissedARareEventAreNotCertain) {
   // The left half saw none of what makes up 30 % of its light; its equal samples left a variance of rounding size.
   Picture image = test::constant(32, 32, Rgb(0.7f)), variance = test::constant(32, 32, Rgb(1e-16f));

@@ -241,6 +241,7 @@ void load_integrator(Loader& loader, const Node& node) {
                                     {"guided-vcm", "guided-vcm"},
                                     {"photon", "photon"},
                                     {"vpl", "vpl"},
+                                    {"plain-vpl", "plain-vpl"},
                                     {"volpath", "path"},
                                     {"volpath-simple", "path"},
                                     {"volpathmis", "path"},
@@ -257,10 +258,8 @@ void load_integrator(Loader& loader, const Node& node) {
   const Open open(loader, node);
   if (const std::vector<const Node*> inner = nested(p, "integrator"); !inner.empty())
     return load_integrator(loader, *inner.front());  // aov, moment and others measure what another one renders
-  if (name == std::end(names)) {
-    hints.integrator = node.written;
-    return note(loader, node, "Ajar has no integrator of this name: its own default is used");
-  }
+  if (name == std::end(names))
+    return note(loader, node, "Ajar has no integrator of this name: it chooses one as if the scene named none");
   hints.integrator = name->ours;
   note_unused(p, {"id", "rr_depth", "strict_normals", "samples_per_pass", "timeout", "block_size", "light_image",
                   "sample_direct", "emitter_samples", "bsdf_samples", "shading_samples", "max_null_collisions",

@@ -278,6 +278,7 @@ TEST(Integrators, AreHints) {
             1 << 30);
   const Scene s = load_inside("<integrator type='manifold_path'><integer name='max_depth' value='-1'/></integrator>");
   EXPECT_TRUE(says(s.notes, "Ajar has no integrator of this name"));
+  EXPECT_EQ(s.hints.integrator, "");
   EXPECT_TRUE(
       says(load_inside("<integrator type='path'><boolean name='hideEmitters' value='true'/></integrator>").notes,
            "hide_emitters"));

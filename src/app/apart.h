@@ -1,0 +1,20 @@
+// Enters: the files that a command writes, and those that it reads.
+// Leaves: nothing; Error where one of them would be written over.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace ajar {
+
+/// A file, and what names it in messages: "--log", "the record".
+struct Named {
+  std::string option, path;
+};
+
+/// Throws Error where both are the same file, there or not.
+void require_apart(const Named& output, const Named& other);
+/// The same of every output, against the others and against what is read.
+void require_apart(const std::vector<Named>& outputs, const std::vector<Named>& read);
+
+}  // namespace ajar

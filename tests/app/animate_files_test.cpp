@@ -1,0 +1,181 @@
+// ajar animate and files: what each frame has of its own, that nothing is written over what is read, and what is told
+// before the work.
+
+#include <gtest/gtest.h>
+
+#include "animate_stage.h"
+#include "app/frames.h"
+
+namespace ajar {
+namespace {
+
+namespace fs = std::filesystem;
+using kit::error_of;
+using Words = std::vector<std::string>;
+
+struct AnimateFiles : Animate {
+  /// Words after ajar animate SCENE; no other options.
+  void call(Words words) const {
+    CLI::App app;
+    add_animate(app);
+    words.insert(words.begin(), {"animate", in("room.xml"), "-q", "--threads", "1"});
+    std::reverse(words.begin(), words.end());
+    app.parse(words);
+  }
+  std::string said(const Words& words) const {
+    return error_of([&] { call(words); });
+  }
+  nlohmann::json record(const std::string& name) const { return nlohmann::json::parse(kit::bytes_of(in(name))); }
+  /// The room's text with something put before its first sensor.
+  void put(const std::string& text) const {
+    std::string room = kit::bytes_of(in("room.xml"));
+    write("room.xml", room.insert(room.find("<sensor"), text));
+  }
+};
+
+// A scene's parameters may move what it asks for, too.
+TEST_F(AnimateFiles, SamplesAndDepthAreEachFramesOwn) {
+  put(R"(<default name="depth" value="9"/><default name="spp" value="1"/>
+    <integrator type="guided-bdpt"><integer name="max_depth" value="$depth"/></integrator>)");
+  std::string room = kit::bytes_of(in("room.xml"));
+  const std::string sampler = R"(<sampler type="independent"><integer name="sample_count" value="$spp"/></sampler>)";
+  write("room.xml", room.insert(room.find("<film"), sampler));
+  const auto frames = [&](const std::string& range, const std::string& out) {
+    call({"--frames", range, "-D", "depth=2..4", "-D", "spp=5..7", "-o", in(out) + "/f_%d.exr"});
+  };
+  frames("3", "whole");
+  frames("2/3", "alone");
+  frames("0-1/3", "parts"), frames("2/3", "parts");
+  for (int f = 0; f < 3; ++f) {
+    const auto options = record("whole/f_" + std::to_string(f) + ".json")["options"];
+    EXPECT_EQ(options["max_depth"], 2 + f);
+    EXPECT_EQ(options["spp"], 5 + f);
+  }
+  EXPECT_EQ(pixels("whole/f_2.exr"), pixels("alone/f_2.exr"));
+  EXPECT_EQ(pixels("whole/f_2.exr"), pixels("parts/f_2.exr"));
+  EXPECT_SAYS(
+      said({"--frames", "3", "-D", "depth=2..4", "-D", "spp=5..7", "--max-depth", "2", "-o", in("whole/f_%d.exr")}),
+      "f_1.exr: was made otherwise");
+}
+
+TEST_F(AnimateFiles, AnIntegratorIsOfAllFrames) {
+  for (const char* n : {"0", "1"})
+    write("integrator" + std::string(n) + ".xml",
+          std::string("<integrator type=\"") + (n[0] == '0' ? "path" : "light") + "\"/>");
+  put(R"(<default name="n" value="0"/><include filename="integrator$n.xml"/>)");
+  EXPECT_SAYS(said({"--frames", "2", "--spp", "1", "-D", "n=0..1", "-o", in("f_%d.exr")}),
+              "frame 1: the scene names the integrator light, but path in frame 0; choose with --integrator");
+  EXPECT_FALSE(fs::exists(in("f_0.exr")));
+}
+
+TEST_F(AnimateFiles, WhatIsReadIsNotWrittenOver) {
+  write("ffmpeg", "#!/bin/sh\nexit 1\n");
+  fs::permissions(in("ffmpeg"), fs::perms::owner_all);
+  const std::string path = std::getenv("PATH");
+  ::setenv("PATH", (folder.string() + ":" + path).c_str(), 1);
+  fs::create_directories(in("shot"));
+  const std::string keys = R"({"frames": 2, "parameters": {"door": [[0, 1], [1, 2]]}})";
+  for (const char* name : {"shot/animation.json", "shot/f_1.json"}) {
+    write(name, keys);
+    EXPECT_SAYS(said({"--spp", "1", "--keyframes", in(name), "-o", in("shot/f_%d.exr")}),
+                "is the same file as --keyframes " + in(name));
+    EXPECT_EQ(kit::bytes_of(in(name)), keys);
+    fs::remove(in(name));
+  }
+  const Words usual = {"--frames", "2", "--spp", "1", "-o", in("shot/f_%d.exr")};
+  const auto with = [&](Words more) {
+    more.insert(more.end(), usual.begin(), usual.end());
+    return said(more);
+  };
+  fs::create_symlink(in("room.xml"), in("film.mp4"));
+  EXPECT_SAYS(with({"--video", in("film.mp4")}), "--video " + in("film.mp4") + ": is the same file as the scene");
+  EXPECT_TRUE(fs::is_empty(in("shot")));
+  EXPECT_EQ(with({}), "");
+  EXPECT_SAYS(with({"--reference", in("shot/f_%d.exr")}), "is the same file as --reference");
+  ::setenv("PATH", path.c_str(), 1);
+}
+
+// Images of a sequence, one per frame, are files of that frame's scene alone.
+TEST_F(AnimateFiles, ImagesOfASceneAreNotWrittenOver) {
+  fs::create_directories(in("shot"));
+  const Picture grey{2, 2, {"R", "G", "B"}, std::vector<float>(12, 0.5f)};
+  for (int f = 0; f < 3; ++f) write_png(in("shot/f_" + std::to_string(f) + ".png"), grey);
+  const std::string before = kit::bytes_of(in("shot/f_1.png"));
+  put(R"(<default name="n" value="1"/>)");
+  std::string room = kit::bytes_of(in("room.xml"));
+  const std::string image = R"(<bsdf type="diffuse"><texture name="reflectance" type="bitmap">
+    <string name="filename" value="shot/f_$n.png"/></texture></bsdf>)";
+  write("room.xml", room.insert(room.find("<transform", room.find("<shape")), image));
+  EXPECT_SAYS(said({"--frames", "3", "-D", "n=0..2", "--spp", "1", "-o", in("shot/f_%d.exr")}), "a file of the scene");
+  EXPECT_EQ(kit::bytes_of(in("shot/f_1.png")), before);
+}
+
+TEST_F(AnimateFiles, ReferencesMayBeOfAPart) {
+  run("4", "reference", {"--integrator", "path", "--spp", "16"});
+  fs::remove(in("reference/f_01.exr"));
+  run("4", "out", {"--integrator", "path"});
+  run("2-3/4", "out", {"--integrator", "path", "--reference", in("reference/f_%02d.exr")});
+  const auto frames = figures("out")["frames"];
+  ASSERT_EQ(frames.size(), 4u);
+  EXPECT_FALSE(frames[0]["relmse"].is_null());
+  EXPECT_TRUE(frames[1]["relmse"].is_null());
+  EXPECT_FALSE(frames[2]["relmse"].is_null());
+  EXPECT_TRUE(frames[1]["flicker"].is_null());
+  EXPECT_TRUE(frames[2]["flicker"].is_null()) << "the reference before it is missing";
+  EXPECT_FALSE(frames[3]["flicker"].is_null());
+}
+
+TEST_F(AnimateFiles, UnfitReferencesAreToldBeforeTheWork) {
+  run("2", "reference", {"--integrator", "path"});
+  const auto with = [&](Words more) {
+    more.insert(more.end(), {"--integrator", "path", "--reference", in("reference/f_%02d.exr")});
+    return error_of([&] { run("2", "out", more); });
+  };
+  EXPECT_SAYS(with({"--size", "8x8"}), "f_00.exr: is 16x12, the render 8x8; use --size");
+  const std::string whole = kit::bytes_of(in("reference/f_01.exr"));
+  std::ofstream(in("reference/f_01.exr")) << whole.substr(0, whole.size() / 2);
+  EXPECT_SAYS(with({}), "reference/f_01.exr");
+  EXPECT_FALSE(fs::exists(in("out/f_00.exr")));
+}
+
+TEST_F(AnimateFiles, DamagedFramesAreToBeRemoved) {
+  run("2", "out", {"--integrator", "path"});
+  const std::string whole = kit::bytes_of(in("out/f_01.exr"));
+  std::ofstream(in("out/f_01.exr")) << whole.substr(0, whole.size() - 100);
+  EXPECT_SAYS(error_of([&] {
+                run("2", "out", {"--integrator", "path"});
+              }),
+              in("out/f_01.exr") + ": is no frame, or a damaged one; remove it");
+}
+
+TEST_F(AnimateFiles, RecordsTellTimeAndChoiceOfLights) {
+  std::string room = kit::bytes_of(in("room.xml"));
+  const std::string still = R"(<transform name="to_world"><scale value="0.6"/><translate x="$door"/></transform>)";
+  room.replace(room.find(still), still.size(), R"(<animation name="to_world">
+    <transform time="1"><scale value="0.6"/></transform><transform time="3"><scale value="0.7"/></transform>
+    </animation>)");
+  write("room.xml", room);
+  for (const auto& [integrator, choice] : {std::pair{"path", "tree"}, {"guided-bdpt", "learned"}}) {
+    call({"--frames", "3", "--spp", "1", "--integrator", integrator, "-o", in(integrator) + "/f_%d.exr"});
+    const auto options = record(std::string(integrator) + "/f_1.json")["options"];
+    EXPECT_EQ(options["at"], 2);
+    EXPECT_EQ(options["light_choice"], choice);
+  }
+}
+
+TEST_F(AnimateFiles, ParametersOfKeyframesAreNotBlamedOnTheUser) {
+  write("keys.json", R"({"frames": 2, "parameters": {"wind": [[0, 1], [1, 2]]}})");
+  const std::string what = said({"--spp", "1", "--keyframes", in("keys.json"), "-o", in("f_%d.exr")});
+  EXPECT_SAYS(what, in("keys.json") + ": parameter \"wind\": the scene has no parameter of this name");
+  EXPECT_EQ(what.find("-D"), what.npos) << what;
+}
+
+TEST_F(AnimateFiles, FilmsHaveKnownNames) {
+  for (const char* name : {"film", "film.exr", "film.mp3"})
+    EXPECT_SAYS(said({"--frames", "2", "--spp", "1", "-o", in("f_%d.exr"), "--video", in(name)}),
+                "is no name for a film; write NAME.mp4");
+  EXPECT_FALSE(fs::exists(in("f_0.exr")));
+}
+
+}  // namespace
+}  // namespace ajar
