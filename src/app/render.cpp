@@ -57,7 +57,11 @@ void check_time(double at, const Scene& scene) {
     throw Error(fmt::format("--at {}: nothing in the scene has an <animation>; leave it out", at));
 }
 
+bool has_samples(const Film& film) { return film.passes > 0 || film.chunks > 0; }
+
 std::string interruption(const RenderArguments& a, const Film& film) {
+  if (!has_samples(film))
+    return fmt::format("interrupted before the first sample that is in the image; {} is not written", a.out);
   const std::string rest = fmt::format("; {} has what was done", a.out);
   if (film.passes > 0) return fmt::format("interrupted after {:.1f} spp{}", spp_of(film), rest);
   const double share = 1 - double(film.chunks) / chunk_count(film);
@@ -131,7 +135,8 @@ void trace(const RenderArguments& a, const Scene& scene, const Accel& accel, Run
 
 void write_all(const RenderArguments& a, const Scene& scene, const Accel& accel, Run& run, const RenderState& state,
                const Log& log) {
-  std::vector<std::function<void()>> writes = {[&] { write_image(a, scene, accel, run, state); }};
+  std::vector<std::function<void()>> writes;
+  if (has_samples(state.film)) writes.emplace_back([&] { write_image(a, scene, accel, run, state); });
   if (!a.checkpoint.empty())
     writes.emplace_back([&] { save_checkpoint(a.checkpoint, checkpoint_key(run, state.film), state); });
   if (!a.save_fields.empty() && is_guided(run.options.integrator))
