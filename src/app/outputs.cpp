@@ -142,8 +142,9 @@ Log open_log(const RenderArguments& a, std::optional<Picture> reference) {
 }
 
 void check_apart(const RenderArguments& a, const Scene& scene) {
-  for (const Named& output : written(a))
-    for (const std::string& file : scene.files) require_apart(output, Named{"a file of the scene,", file});
+  std::vector<Named> files;
+  for (const std::string& file : scene.files) files.push_back({"a file of the scene,", file});
+  require_apart(written(a), files);
 }
 
 void check_outputs(const RenderArguments& a) {

@@ -1,5 +1,5 @@
 // Enters: scenes and renders.
-// Leaves: whether two renders are the same to the byte.
+// Leaves: whether two renders are the same to the byte, and how bright one is.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -28,6 +28,13 @@ inline Scene strip(bool wide) {
   }
   finish(scene);
   return scene;
+}
+
+/// Of a pixel, its channels together.
+inline double mean_of(const Film& film) {
+  double sum = 0;
+  for (const float x : develop(film).pixels) sum += double(x);
+  return sum / double(film.pixels());
 }
 
 template <class T>

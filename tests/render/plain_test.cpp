@@ -91,12 +91,6 @@ RenderOptions sparing(const std::string& integrator, uint32_t spp) {
   return o;
 }
 
-double mean_of(const Film& film) {
-  double sum = 0;
-  for (const float x : develop(film).pixels) sum += double(x);
-  return sum / double(film.pixels());
-}
-
 TEST(Plain, TakesOverWhereLightIsEasyToFind) {
   Scene scene = stage(64);
   finish(scene);

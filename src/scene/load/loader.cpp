@@ -36,13 +36,15 @@ void count_text(Document& document, const std::string& text) {
 }
 
 void count_file(Loader& loader, const Node& node, const std::string& path) {
-  std::array<char, 40> head{};
-  std::ifstream(path, std::ios::binary).read(head.data(), head.size());
-  if (const std::string problem = pointer_problem({head.data(), head.size()}); !problem.empty())
-    fail(loader, node, path + problem);
   auto& sums = loader.cache ? loader.cache->files : loader.sums;
-  const auto [known, added] = sums.emplace(path, 0);
-  if (added) known->second = checksum_of_file(path);
+  auto known = sums.find(path);
+  if (known == sums.end()) {
+    std::array<char, 40> head{};
+    std::ifstream(path, std::ios::binary).read(head.data(), head.size());
+    if (const std::string problem = pointer_problem({head.data(), head.size()}); !problem.empty())
+      fail(loader, node, path + problem);
+    known = sums.emplace(path, checksum_of_file(path)).first;
+  }
   loader.scene.content = checksum(&known->second, sizeof known->second, loader.scene.content);
 }
 
