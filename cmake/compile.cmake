@@ -34,14 +34,17 @@ if(AJAR_GOLD AND NOT AJAR_LTO AND NOT AJAR_SANITIZE)
   target_link_options(ajar_options INTERFACE -fuse-ld=gold)
 endif()
 
-# With AJAR_PCH, the headers of others that most files of rooms read are compiled once. None of Ajar's own: a change of one
+# With AJAR_PCH, headers of others that most files of TARGET read are compiled once. None of Ajar's own: a change of one
 # compiles what includes it and no more.
 function(ajar_precompile target)
-  if(AJAR_PCH AND target STREQUAL ajar_core)
-    target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <filesystem> <fstream> <functional> <map> <memory>
-                              <optional> <span> <string> <vector> <fmt/format.h> <glm/glm.hpp>)
-  elseif(AJAR_PCH)
-    target_precompile_headers(${target} REUSE_FROM ajar_core)
+  if(AJAR_PCH)
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+  endif()
+endfunction()
+# The same that SOURCE has.
+function(ajar_precompile_from source target)
+  if(AJAR_PCH)
+    target_precompile_headers(${target} REUSE_FROM ${source})
   endif()
 endfunction()
 
@@ -57,7 +60,12 @@ function(ajar_room name)
                              $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(ajar_${name} PRIVATE $<BUILD_INTERFACE:ajar_options> fmt::fmt)
   target_compile_features(ajar_${name} PUBLIC cxx_std_20)
-  ajar_precompile(ajar_${name})
+  if(name STREQUAL core)
+    ajar_precompile(ajar_core <algorithm> <array> <cmath> <filesystem> <fstream> <functional> <map> <memory> <optional> <span>
+                    <string> <vector> <fmt/format.h> <glm/glm.hpp>)
+  else()
+    ajar_precompile_from(ajar_core ajar_${name})
+  endif()
   foreach(use ${ROOM_USES})
     target_link_libraries(ajar_${name} PUBLIC ajar_${use})
   endforeach()

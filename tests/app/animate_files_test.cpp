@@ -16,11 +16,8 @@ using Words = std::vector<std::string>;
 struct AnimateFiles : Animate {
   /// Words after ajar animate SCENE; no other options.
   void call(Words words) const {
-    CLI::App app;
-    add_animate(app);
     words.insert(words.begin(), {"animate", in("room.xml"), "-q", "--threads", "1"});
-    std::reverse(words.begin(), words.end());
-    app.parse(words);
+    run_command_line(words);
   }
   std::string said(const Words& words) const {
     return error_of([&] { call(words); });

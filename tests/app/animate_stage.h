@@ -5,13 +5,12 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "ajar/film/picture.h"
-#include "app/commands.h"
+#include "app/command_line.h"
 #include "kit/files.h"
 
 #define EXPECT_SAYS(text, words)                                                \
@@ -46,8 +45,6 @@ struct Animate : testing::Test {
   std::string in(const std::string& name) const { return (folder / name).string(); }
 
   void run(const std::string& frames, const std::string& out, std::vector<std::string> more = {}) const {
-    CLI::App app;
-    add_animate(app);
     std::vector<std::string> arguments = {"animate", in("room.xml"),          "-q", "--frames",      frames,
                                           "-o",      in(out) + "/f_%02d.exr", "-D", "door=0.2..1.4", "--threads",
                                           "1"};
@@ -57,8 +54,7 @@ struct Animate : testing::Test {
     otherwise("--spp", "2"), otherwise("--integrator", "guided-bdpt");
     if (std::find(more.begin(), more.end(), "path") == more.end()) otherwise("--teach", "1");
     arguments.insert(arguments.end(), more.begin(), more.end());
-    std::reverse(arguments.begin(), arguments.end());
-    app.parse(arguments);
+    run_command_line(arguments);
   }
   std::vector<float> pixels(const std::string& name) const { return read_picture(in(name)).pixels; }
   nlohmann::json figures(const std::string& out) const {

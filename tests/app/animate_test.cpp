@@ -155,14 +155,8 @@ TEST_F(Animate, FramesOfAChangedSceneAreAnError) {
 // However short the time, a frame has a whole pass, and fields that had a lesson.
 TEST_F(Animate, FramesAreWholeHoweverShortTheirTime) {
   for (const char* integrator : {"guided-bdpt", "vpl", "path"}) {
-    CLI::App app;
-    add_animate(app);
-    std::vector<std::string> arguments = {
-        "animate",       in("room.xml"), "-q",       "--time", "0.001s",
-        "--size",        "80x80",        "--frames", "2",      "-D",
-        "door=0.2..1.4", "--integrator", integrator, "-o",     in(integrator) + "_%d.exr"};
-    std::reverse(arguments.begin(), arguments.end());
-    app.parse(arguments);
+    run_command_line({"animate", in("room.xml"), "-q", "--time", "0.001s", "--size", "80x80", "--frames", "2", "-D",
+                      "door=0.2..1.4", "--integrator", integrator, "-o", in(integrator) + "_%d.exr"});
     for (const char* frame : {"_0.exr", "_1.exr"})
       EXPECT_EQ(std::get<double>(read_metadata(in(integrator) + frame).at("ajar:spp")), 1) << integrator;
   }
@@ -192,13 +186,8 @@ TEST_F(Animate, ADamagedFileOfFieldsIsLearnedAgain) {
 TEST_F(Animate, CoherenceIsOfNumbersAndFields) {
   const auto same = [&](const std::string& coherent, const std::string& integrator) {
     const std::string out = coherent + integrator;
-    CLI::App app;
-    add_animate(app);
-    std::vector<std::string> arguments = {
-        "animate",    in("room.xml"), "-q",           "--spp",    "2",  "--frames",           "2",
-        "--coherent", coherent,       "--integrator", integrator, "-o", in(out) + "/f_%d.exr"};
-    std::reverse(arguments.begin(), arguments.end());
-    app.parse(arguments);
+    run_command_line({"animate", in("room.xml"), "-q", "--spp", "2", "--frames", "2", "--coherent", coherent,
+                      "--integrator", integrator, "-o", in(out) + "/f_%d.exr"});
     return pixels(out + "/f_0.exr") == pixels(out + "/f_1.exr");
   };
   EXPECT_TRUE(same("on", "path"));
@@ -239,13 +228,8 @@ TEST_F(Animate, FlickerIsOfFramesOfOneSize) {
 
 TEST_F(Animate, KeyframesComeFromAFile) {
   write("keys.json", R"({"frames": 3, "parameters": {"door": {"smooth": true, "keys": [[0, 0.5], [2, 1.5]]}}})");
-  CLI::App app;
-  add_animate(app);
-  std::vector<std::string> arguments = {"animate",       in("room.xml"), "-q",   "--spp",    "1",   "--keyframes",
-                                        in("keys.json"), "--integrator", "path", "--frames", "1-2", "-o",
-                                        in("k_%d.exr")};
-  std::reverse(arguments.begin(), arguments.end());
-  app.parse(arguments);
+  run_command_line({"animate", in("room.xml"), "-q", "--spp", "1", "--keyframes", in("keys.json"), "--integrator",
+                    "path", "--frames", "1-2", "-o", in("k_%d.exr")});
   EXPECT_FALSE(fs::exists(in("k_0.exr")));
   EXPECT_TRUE(fs::exists(in("k_2.exr")));
   const auto wrong = [&](const std::string& text) {
@@ -278,13 +262,9 @@ TEST_F(Animate, KeysThatNoFrameReachesAreTold) {
   const std::vector<std::string> one = notes("[[0, 1], [3.5, 2], [9, 3]]");
   ASSERT_EQ(one.size(), 1u);
   EXPECT_EQ(one[0], in("keys.json") + ": parameter \"door\": no frame reaches its key at 3.5; they go from 0 to 2");
-  CLI::App app;
-  add_animate(app);
-  std::vector<std::string> arguments = {"animate",       in("room.xml"), "--spp", "1",  "--keyframes",
-                                        in("keys.json"), "--integrator", "path",  "-o", in("k_%d.exr")};
-  std::reverse(arguments.begin(), arguments.end());
   testing::internal::CaptureStderr();
-  app.parse(arguments);
+  run_command_line({"animate", in("room.xml"), "--spp", "1", "--keyframes", in("keys.json"), "--integrator", "path",
+                    "-o", in("k_%d.exr")});
   EXPECT_SAYS(testing::internal::GetCapturedStderr(), "ajar: note: " + one[0] + "\n");
 }
 
@@ -298,13 +278,10 @@ TEST_F(Animate, ScenesMoveByThemselves) {
       <film type="hdrfilm"><integer name="width" value="8"/><integer name="height" value="8"/></film></sensor>
     <shape type="sphere"><emitter type="area"/></shape></scene>)");
   const auto animate = [&](const std::string& out, std::vector<std::string> more) {
-    CLI::App app;
-    add_animate(app);
     std::vector<std::string> arguments = {"animate", in("room.xml"),      "-q",           "--spp", "4", "--frames", "3",
                                           "-o",      in(out) + "_%d.exr", "--integrator", "path"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    std::reverse(arguments.begin(), arguments.end());
-    app.parse(arguments);
+    run_command_line(arguments);
   };
   animate("all", {});
   fs::create_directories(in("part"));
@@ -328,12 +305,7 @@ TEST_F(Animate, SaysWhatIsWrong) {
   EXPECT_SAYS(wrong({"--at", "0..1"}), "--at 0..1: nothing in the scene has an <animation>");
   EXPECT_SAYS(wrong({"--time", "soon"}), "--time soon");
   const auto pattern = [&](const std::string& out) {
-    return error_of([&] {
-      CLI::App app;
-      add_animate(app);
-      std::vector<std::string> arguments = {out, "-o", "2", "--frames", in("room.xml"), "animate"};
-      app.parse(arguments);
-    });
+    return error_of([&] { run_command_line({"animate", in("room.xml"), "--frames", "2", "-o", out}); });
   };
   EXPECT_SAYS(pattern(in("frame.exr")), "needs a place for the number");
   EXPECT_SAYS(pattern(in("f_%d_%d.exr")), "once");

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -11,7 +10,7 @@
 #include "ajar/core/error.h"
 #include "ajar/film/picture.h"
 #include "app/arguments.h"
-#include "app/commands.h"
+#include "app/command_line.h"
 
 namespace ajar {
 namespace {
@@ -31,19 +30,12 @@ struct FieldsUsed : testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder); }
 
-  static void parse(std::vector<std::string> arguments) {
-    CLI::App app;
-    add_render(app);
-    add_fields(app);
-    std::reverse(arguments.begin(), arguments.end());
-    app.parse(arguments);
-  }
   /// Renders the box, small; the record.
   nlohmann::json render(const std::vector<std::string>& more, const std::string& integrator = "guided-bdpt") const {
     std::vector<std::string> arguments = {"render",       box,        "-q", "--size", "24x16", "--max-depth", "4",
                                           "--integrator", integrator, "-o", out};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    parse(arguments);
+    run_command_line(arguments);
     std::ifstream record(folder / "image.json");
     return nlohmann::json::parse(record);
   }
@@ -59,7 +51,7 @@ struct FieldsUsed : testing::Test {
   std::string told(std::vector<std::string> more) const {
     more.insert(more.begin(), {"fields", fields});
     testing::internal::CaptureStdout();
-    const std::string wrong = error([&] { parse(more); });
+    const std::string wrong = error([&] { run_command_line(more); });
     const std::string text = testing::internal::GetCapturedStdout();
     EXPECT_EQ(wrong, "");
     return text;
@@ -215,7 +207,7 @@ TEST_F(FieldsUsed, PicturesNeedTheRightSceneAndAFolder) {
   const auto refused = [&](std::vector<std::string> more) {
     more.insert(more.begin(), {"fields", fields});
     testing::internal::CaptureStdout();
-    const std::string what = error([&] { parse(more); });
+    const std::string what = error([&] { run_command_line(more); });
     EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
     return what;
   };

@@ -6,11 +6,10 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "app/commands.h"
+#include "app/command_line.h"
 #include "app/progress.h"
 #include "kit/files.h"
 
@@ -37,15 +36,12 @@ struct Outputs : testing::Test {
   }
 
   static void run(Words more) {
-    CLI::App app;
-    add_render(app);
     more.insert(more.begin(), {"render", "box.xml", "-q", "--size", "8x8"});
     for (const Words& usual :
          {Words{"--max-depth", "3"}, Words{"--integrator", "bdpt"}, Words{"--spp", "2"}, Words{"-o", "a.exr"}})
       if (std::find(more.begin(), more.end(), usual[0]) == more.end())
         more.insert(more.end(), usual.begin(), usual.end());
-    std::reverse(more.begin(), more.end());
-    app.parse(more);
+    run_command_line(more);
   }
   static std::string error_of(const Words& more) {
     try {
@@ -180,14 +176,10 @@ TEST_F(Outputs, StrategiesOfLongPathsHaveNoImage) {
 
 TEST_F(Outputs, ResumingWithLessThanThereIsTellsSo) {
   run({"--spp", "4", "--checkpoint", "state"});
-  CLI::App app;
-  add_render(app);
-  Words words = {"render", "box.xml", "--size", "8x8",   "--max-depth", "3",        "--integrator",
-                 "bdpt",   "-o",      "a.exr",  "--spp", "3",           "--resume", "state"};
-  std::reverse(words.begin(), words.end());
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
-  app.parse(words);
+  run_command_line({"render", "box.xml", "--size", "8x8", "--max-depth", "3", "--integrator", "bdpt", "-o", "a.exr",
+                    "--spp", "3", "--resume", "state"});
   testing::internal::GetCapturedStdout();
   const std::string said = testing::internal::GetCapturedStderr();
   EXPECT_NE(said.find("note: state holds 4 passes, more than --spp 3"), std::string::npos) << said;
@@ -196,11 +188,9 @@ TEST_F(Outputs, ResumingWithLessThanThereIsTellsSo) {
 
 TEST_F(Outputs, VersusIsCheckedBeforeAPlannedRender) {
   for (const char* other : {"nope", "guided-bdpt"}) {
-    CLI::App app;
-    add_render(app);
-    Words words = {"render", "box.xml", "-q", "--plan", "auto", "--versus", other, "-o", "a.exr", "--spp", "1"};
-    std::reverse(words.begin(), words.end());
-    const std::string said = kit::error_of([&] { app.parse(words); });
+    const std::string said = kit::error_of([&] {
+      run_command_line({"render", "box.xml", "-q", "--plan", "auto", "--versus", other, "-o", "a.exr", "--spp", "1"});
+    });
     EXPECT_EQ(said.find("--versus " + std::string(other) + ": cannot be held against what is planned"), 0u) << said;
   }
   EXPECT_EQ(count(), 3u);
@@ -217,11 +207,8 @@ TEST_F(Outputs, NamesNeedBeNoText) {
 // What a list of parts makes is checked as if it had been named.
 TEST_F(Outputs, PartsOfAPlanAreCheckedAsAnIntegratorIs) {
   const auto said = [](Words words) {
-    CLI::App app;
-    add_render(app);
     words.insert(words.begin(), {"render", "box.xml", "-q", "--size", "8x8", "--spp", "2", "-o", "a.exr"});
-    std::reverse(words.begin(), words.end());
-    return kit::error_of([&] { app.parse(words); });
+    return kit::error_of([&] { run_command_line(words); });
   };
   EXPECT_NE(said({"--plan", "light-subpaths", "--no-next-event"}).find("bdpt needs it"), std::string::npos);
   EXPECT_NE(said({"--plan", "none", "--save-fields", "f"}).find("path learns no fields"), std::string::npos);

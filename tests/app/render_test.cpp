@@ -3,13 +3,12 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "ajar/core/error.h"
-#include "app/commands.h"
+#include "app/command_line.h"
 #include "app/planning.h"
 #include "kit/files.h"
 
@@ -31,8 +30,6 @@ struct Render : testing::Test {
 
   /// Renders the box scene, small; the record.
   nlohmann::json run(std::vector<std::string> arguments) const {
-    CLI::App app;
-    add_render(app);
     const std::string box = AJAR_SOURCE_DIR "/scenes/box/box.xml";
     std::vector<std::string> all = {"render", box, "-q", "--max-depth", "4", "-o", out};
     const auto usual = [&](const char* option, const char* value) {
@@ -41,8 +38,7 @@ struct Render : testing::Test {
     };
     usual("--size", "24x16"), usual("--integrator", "path");
     arguments.insert(arguments.begin(), all.begin(), all.end());
-    std::reverse(arguments.begin(), arguments.end());
-    app.parse(arguments);
+    run_command_line(arguments);
     std::ifstream record(folder / "image.json");
     return nlohmann::json::parse(record);
   }
@@ -206,12 +202,9 @@ TEST_F(Render, TimeSufficesForAWholePass) {
 TEST_F(Render, ResumeKnowsTheFilesOfTheScene) {
   namespace fs = std::filesystem;
   const auto render = [&](const std::string& scene, std::vector<std::string> more) {
-    CLI::App app;
-    add_render(app);
     std::vector<std::string> arguments = {"render", scene, "-q", "--size", "8x8", "--integrator", "path", "-o", out};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    std::reverse(arguments.begin(), arguments.end());
-    app.parse(arguments);
+    run_command_line(arguments);
   };
   const auto error = [&](const std::string& scene) {
     return kit::error_of([&] { render(scene, {"--spp", "2", "--resume", state}); });
@@ -232,12 +225,9 @@ TEST_F(Render, ResumeKnowsTheTimeOfTheScene) {
       <transform time="0"><translate z="4"/></transform><transform time="1"><translate z="5"/></transform>
     </animation><emitter type="area"/></shape></scene>)";
   const auto render_at = [&](const char* time, std::vector<std::string> more) {
-    CLI::App app;
-    add_render(app);
     more.insert(more.begin(),
                 {"render", scene, "-q", "--size", "8x8", "--integrator", "path", "-o", out, "--at", time});
-    std::reverse(more.begin(), more.end());
-    return kit::error_of([&] { app.parse(more); });
+    return kit::error_of([&] { run_command_line(more); });
   };
   EXPECT_EQ(render_at("0", {"--spp", "1", "--checkpoint", state}), "");
   EXPECT_EQ(render_at("0", {"--spp", "2", "--resume", state}), "");
@@ -254,16 +244,14 @@ TEST_F(Render, TimesAreOfScenesThatMove) {
 
 TEST(PlanCommand, SaysWhatItKnows) {
   const auto plan = [](std::vector<std::string> arguments) {
-    CLI::App app;
-    add_plan(app);
-    arguments.insert(arguments.end(), {AJAR_SOURCE_DIR "/scenes/box/box.xml", "plan"});
+    arguments.insert(arguments.begin(), {"plan", AJAR_SOURCE_DIR "/scenes/box/box.xml"});
     testing::internal::CaptureStderr();
-    const std::string error = kit::error_of([&] { app.parse(arguments); });
+    const std::string error = kit::error_of([&] { run_command_line(arguments); });
     return testing::internal::GetCapturedStderr() + error;
   };
-  EXPECT_EQ(plan({"-7", "--max-depth"}), "--max-depth -7: -1 for unlimited, 1 or more edges otherwise");
-  EXPECT_EQ(plan({"0", "--max-depth"}), "--max-depth 0: -1 for unlimited, 1 or more edges otherwise");
-  EXPECT_EQ(plan({"1s", "--cpu-time"}), "ajar: note: --cpu-time 1s is too short to learn anything; give 10s or more\n");
+  EXPECT_EQ(plan({"--max-depth", "-7"}), "--max-depth -7: -1 for unlimited, 1 or more edges otherwise");
+  EXPECT_EQ(plan({"--max-depth", "0"}), "--max-depth 0: -1 for unlimited, 1 or more edges otherwise");
+  EXPECT_EQ(plan({"--cpu-time", "1s"}), "ajar: note: --cpu-time 1s is too short to learn anything; give 10s or more\n");
   Plan black;
   black.pilot.emplace();
   EXPECT_EQ(describe(black).find("inf"), std::string::npos);

@@ -124,6 +124,15 @@ inline void expect_same_bytes(const RenderState& a, const RenderState& b) {
   expect_same_learning(a.learning, b.learning);
 }
 
+// Sanitizers take their time: those that have all that the others have.
+inline std::vector<std::string> tried_integrators() {
+#ifdef AJAR_SANITIZED
+  return {"bdpt", "guided-vcm", "vpl"};
+#else
+  return integrator_names();
+#endif
+}
+
 inline RenderOptions options_of(const std::string& integrator, uint32_t spp, uint64_t seed = 5) {
   RenderOptions o;
   o.integrator = integrator;

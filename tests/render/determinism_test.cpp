@@ -13,7 +13,7 @@ using namespace kit;
 TEST(Determinism, ThreadsDoNotMatter) {
   const Scene scene = strip(false);
   const Accel accel(scene);
-  for (const std::string& integrator : integrator_names()) {
+  for (const std::string& integrator : tried_integrators()) {
     RenderOptions o = options_of(integrator, 3);
     o.techniques = integrator == "bdpt" || integrator == "vcm";
     o.threads = 1;
@@ -29,7 +29,7 @@ TEST(Determinism, ThreadsDoNotMatter) {
 TEST(Determinism, SeedsMatter) {
   const Scene scene = strip(false);
   const Accel accel(scene);
-  for (const std::string& integrator : integrator_names()) {
+  for (const std::string& integrator : tried_integrators()) {
     const RenderState a = rendered(scene, accel, options_of(integrator, 2, 1));
     const RenderState b = rendered(scene, accel, options_of(integrator, 2, 2));
     EXPECT_FALSE(same_bytes(develop(a.film).pixels, develop(b.film).pixels)) << integrator;
@@ -39,7 +39,7 @@ TEST(Determinism, SeedsMatter) {
 TEST(Determinism, GoingOnIsTheStraightRun) {
   const Scene scene = strip(true);
   const Accel accel(scene);
-  for (const std::string& integrator : integrator_names()) {
+  for (const std::string& integrator : tried_integrators()) {
     SCOPED_TRACE(integrator);
     const RenderOptions o = options_of(integrator, 3);
     const RenderState straight = rendered(scene, accel, o);
@@ -116,7 +116,7 @@ TEST(Determinism, TimeDoesNotMatter) {
 TEST(Determinism, CheckpointAmidAPassIsTheStraightRun) {
   const Scene scene = strip(true);
   const Accel accel(scene);
-  for (const std::string& integrator : integrator_names()) {
+  for (const std::string& integrator : tried_integrators()) {
     SCOPED_TRACE(integrator);
     RenderOptions o = options_of(integrator, 2);
     o.techniques = integrator == "bdpt";

@@ -11,7 +11,7 @@ namespace {
 using namespace kit;
 
 // Quiet images need few light subpaths, whatever the unit of light; those that are young, or that teach, all of them.
-TEST(Determinism, LightSubpathsAreAsManyAsNoiseAsksFor) {
+TEST(Schedule, LightSubpathsAreAsManyAsNoiseAsksFor) {
   for (const float factor : {1.0f, 1e-6f, 1e6f}) {
     Scene scene = stage(32);
     scene.lights[0].radiance.value *= factor;
@@ -33,7 +33,7 @@ TEST(Determinism, LightSubpathsAreAsManyAsNoiseAsksFor) {
 }
 
 // What comes through glass is left to light subpaths.
-TEST(Determinism, CausticsGetAllLightSubpaths) {
+TEST(Schedule, CausticsGetAllLightSubpaths) {
   const Scene scene = glass_ball();
   const RenderState state = rendered(scene, Accel(scene), options_of("guided-bdpt", 9));
   double splats = 0;
@@ -44,7 +44,7 @@ TEST(Determinism, CausticsGetAllLightSubpaths) {
 }
 
 // Where most of the light is caustics there are several for each pixel, and their splats count the less.
-TEST(Determinism, MostlyCausticsGetMoreLightSubpathsThanPixels) {
+TEST(Schedule, MostlyCausticsGetMoreLightSubpathsThanPixels) {
   LoadOptions load;
   load.defines = {{"resx", "48"}, {"resy", "36"}};
   const Scene scene = load_scene(source_path("scenes/mirrors/mirrors.xml"), load);
@@ -60,7 +60,7 @@ TEST(Determinism, MostlyCausticsGetMoreLightSubpathsThanPixels) {
 }
 
 // What young fields need is so many paths, however many pixels there are.
-TEST(Determinism, LargeImagesAreTaughtByASmallShareOfTheirPixels) {
+TEST(Schedule, LargeImagesAreTaughtByASmallShareOfTheirPixels) {
   const auto shares = [](int width, int height, uint32_t train = 0) {
     Scene scene = stage(8);
     Camera& c = scene.camera;
@@ -97,7 +97,7 @@ TEST(Determinism, LargeImagesAreTaughtByASmallShareOfTheirPixels) {
   for (const auto& [traced, recorded] : shares(256, 256, 8)) EXPECT_EQ(traced, 1u) << "training is what it says";
 }
 
-TEST(Determinism, StoredFieldsSpareTheYoungPasses) {
+TEST(Schedule, StoredFieldsSpareTheYoungPasses) {
   const Scene scene = strip(false);
   const Accel accel(scene);
   const RenderOptions o = options_of("guided-bdpt", 9);
@@ -126,7 +126,7 @@ TEST(Determinism, StoredFieldsSpareTheYoungPasses) {
   EXPECT_EQ(dropped_passes(third.learning, third.film), blind_generations - 3);
 }
 
-TEST(Determinism, FieldsGuideTheSideThatIsAskedFor) {
+TEST(Schedule, FieldsGuideTheSideThatIsAskedFor) {
   const Scene scene = strip(false);
   const Accel accel(scene);
   RenderOptions o = options_of("guided-bdpt", 9);
