@@ -3,11 +3,9 @@
 #include <array>
 
 #include "ajar/join/visibility.h"
-#include "ajar/scene/bsdf/gloss.h"
+#include "expect.h"
 
 namespace ajar {
-using Values = std::array<float, LightStore::width>;
-
 namespace {
 
 // 1 / own density, in units of the density with which a cosine lobe at the other end would find the vertex.
@@ -33,13 +31,6 @@ void put(LightStore::Block& b, uint32_t i, const Vertex& v, const LightStore::Pl
   b.matt[i] = gloss.matt, b.peak[i] = gloss.peak, b.f0[i] = gloss.f0, b.alpha[i] = gloss.alpha;
 }
 
-// A camera vertex, as joins with many lights see it.
-struct Seer {
-  const Vertex* vertex;
-  Gloss gloss;
-  float near;
-  float near_lights = 1;  // factor on Block::near
-};
 Seer seer_of(const Vertex& v, float near = 0, float near_lights = 1) {
   return {&v, gloss_of(v.guide.bsdf, v.guide.wo_local), near, near_lights};
 }
@@ -47,48 +38,6 @@ Seer seer_of(const Joiner& j) {
   constexpr double most = 1e30;
   const double counts = std::max(j.counts, 1e-30), near = j.before / counts * near_of(*j.vertex);
   return seer_of(*j.vertex, float(std::min(near, most)), float(std::min(j.onwards / counts, most)));
-}
-
-// What joins bring, up to a factor that all of a camera vertex share: unoccluded, with the weight against the camera
-// subpath that finds the light vertex, or the light subpath that finds the camera's.
-template <bool glossy, bool glossy_light>
-void expect(const LightStore::Block& b, const Seer& seer, int most, Values& out) {
-  const Guide& guide = seer.vertex->guide;
-  const Vec3 p = seer.vertex->p, n = guide.frame.n, wo = guide.wo;
-  const float behind = guide.bsdf.opaque ? 0.0f : -1.0f, n_o = guide.wo_local.z, near = seer.near,
-              lights = seer.near_lights;
-  const Gloss g = seer.gloss;
-  for (uint32_t i = 0; i < LightStore::width; ++i) {
-    const float x = p.x - b.x[i], y = p.y - b.y[i], z = p.z - b.z[i];
-    const float d2 = std::max(x * x + y * y + z * z, 1e-30f);
-    const float cos_a = b.nx[i] * x + b.ny[i] * y + b.nz[i] * z, cos_c = -(n.x * x + n.y * y + n.z * z);
-    const float faces = std::max(cos_a, b.behind[i] * cos_a) * std::max(cos_c, behind * cos_c);
-    const float geometry = faces / d2 / d2, per_d = glossy || glossy_light ? 1 / std::sqrt(d2) : 0;
-    float here = 1, there = 1;
-    if constexpr (glossy) {
-      const float between = -(wo.x * x + wo.y * y + wo.z * z) * per_d;
-      here = shine(g, n_o, cos_c * per_d, between);
-    }
-    if constexpr (glossy_light) {
-      const float between = (b.wx[i] * x + b.wy[i] * y + b.wz[i] * z) * per_d;
-      const float n_w = b.nx[i] * b.wx[i] + b.ny[i] * b.wy[i] + b.nz[i] * b.wz[i];
-      there = shine({b.matt[i], b.peak[i], b.f0[i], b.alpha[i]}, n_w, cos_a * per_d, between);
-    }
-    const float brings = b.flux[i] * geometry * here * there;
-    out[i] = b.s[i] <= most ? brings / (1 + geometry * (lights * b.near[i] * here + near * there)) : 0;  // (J1)
-  }
-}
-
-void expect(const LightStore::Block& b, const Seer& seer, int most, Values& out) {
-  const bool glossy = seer.gloss.peak > 0;
-  if (glossy && b.glossy)
-    expect<true, true>(b, seer, most, out);
-  else if (glossy)
-    expect<true, false>(b, seer, most, out);
-  else if (b.glossy)
-    expect<false, true>(b, seer, most, out);
-  else
-    expect<false, false>(b, seer, most, out);
 }
 
 }  // namespace
@@ -125,17 +74,6 @@ void make_blocks(LightStore& store, const Near& near, bool in_order) {
       put(store.blocks[i % n], i / n, store.subpath(at).back(), at, near(i));
   }
 }
-
-void apply_chances(const LightStore::Block& b, const Views& views, uint32_t region, Values& values) {
-  if (region >= views.regions) return;
-  const uint8_t* chances = views.chance.data();
-  std::array<uint32_t, LightStore::width> at;
-  std::array<uint8_t, LightStore::width> found;  // the one step that does not run in vectors
-  for (uint32_t i = 0; i < LightStore::width; ++i) at[i] = pair_index(region, std::min(b.region[i], views.regions - 1));
-  for (uint32_t i = 0; i < LightStore::width; ++i) found[i] = chances[at[i]];
-  for (uint32_t i = 0; i < LightStore::width; ++i)
-    values[i] *= b.region[i] < views.regions ? float(found[i]) * chance_step : 1;
-}
 }  // namespace
 
 void finish(LightStore& store) {
@@ -159,14 +97,14 @@ void append(LightStore& store, const LightStore& more) {
 }
 
 namespace {
-// Sums of values up to and with each eighth of them: eight chains of additions are faster than one.
-constexpr uint32_t runs = 8, run = LightStore::width / runs;
+// Of values, every eighth from one on makes a run: added side by side. Sums of runs up to and with each.
+constexpr uint32_t runs = LightStore::runs;
 using Sums = std::array<float, runs>;
 
 Sums sums_of(const Values& values) {
   Sums sums{};
-  for (uint32_t k = 0; k < run; ++k)
-    for (uint32_t i = 0; i < runs; ++i) sums[i] += values[i * run + k];
+  for (uint32_t k = 0; k < LightStore::width; k += runs)
+    for (uint32_t i = 0; i < runs; ++i) sums[i] += values[k + i];
   for (uint32_t i = 1; i < runs; ++i) sums[i] += sums[i - 1];
   return sums;
 }
@@ -176,8 +114,8 @@ uint32_t find(const Sums& sums, const Values& values, float at) {
   uint32_t i = 0;  // sums only rise: as many as the place is past
   for (uint32_t j = 0; j + 1 < runs; ++j) i += !(at < sums[j]);
   float before = i > 0 ? sums[i - 1] : 0;
-  uint32_t k = i * run;
-  for (const uint32_t last = k + run - 1; k < last; ++k)
+  uint32_t k = i;
+  for (; k + runs < LightStore::width; k += runs)
     if (at < (before += values[k])) break;
   return k;
 }
@@ -191,7 +129,7 @@ float joins_for(const Joiner& joiner, float brings) {
 
 // Of so many blocks from one on, and around.
 void expect_some(const LightStore& store, const Joiner& joiner, uint32_t from, uint32_t count, Expectation& out) {
-  out.values.resize(count);
+  out.values.resize(count), out.sums.resize(count);
   out.sum = 0;
   const Seer seer = seer_of(joiner);
   const Guide& guide = joiner.vertex->guide;
@@ -200,7 +138,8 @@ void expect_some(const LightStore& store, const Joiner& joiner, uint32_t from, u
     const LightStore::Block& b = store.blocks[(from + j) % store.blocks.size()];
     expect(b, seer, joiner.most, out.values[j]);
     if (guide.fields) apply_chances(b, guide.fields->views, region, out.values[j]);
-    out.sum += sums_of(out.values[j]).back();
+    out.sums[j] = sums_of(out.values[j]);
+    out.sum += out.sums[j].back();
   }
 }
 }  // namespace
@@ -220,7 +159,7 @@ void choose(const LightStore& store, const Joiner& joiner, Sampler& sampler, Exp
   float before = 0, mark = u.y;
   for (uint32_t j = 0; j < blocks && mark < count; ++j) {
     const Values& values = expected.values[j];
-    const Sums sums = sums_of(values);
+    const Sums& sums = expected.sums[j];
     const uint32_t block = (from + j) % n;
     for (; mark < count; ++mark) {
       const float at = mark / count * sum - before;

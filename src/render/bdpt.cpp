@@ -213,6 +213,14 @@ Joiner joiner_of(const Job& job, const Subpath& camera, float worth) {
   return j;
 }
 
+// Vertices that were chosen lie all over the pool: memory is asked for them at once.
+void ask_for(const LightStore& store, const std::vector<StoreChoice>& choices) {
+  for (const StoreChoice& choice : choices) {
+    const char* const at = reinterpret_cast<const char*>(&store.subpath(*choice.place).back());
+    for (size_t i = 0; i < sizeof(Vertex); i += 64) __builtin_prefetch(at + i);
+  }
+}
+
 // s >= 2: some of the light vertices of many chunks.
 void join_stored(Work& work, float worth) {
   const Job& job = work.job;
@@ -221,6 +229,7 @@ void join_stored(Work& work, float worth) {
   const Vertex& v = camera[camera.n - 1];
   std::vector<StoreChoice>& choices = work.scratch.choices;
   choose(store, joiner_of(job, camera, worth), work.sample.sampler, work.scratch.expected, choices);
+  ask_for(store, choices);
   for (const StoreChoice& choice : choices) {
     const LightStore::Place& at = *choice.place;
     Candidate c;

@@ -24,7 +24,7 @@ struct LightStore {
     float worth = 0;    ///< what the fields expect it to bring to the image, direct view aside
   };
   /// What a choice reads of so many places, side by side. A block is an even sample of all places.
-  static constexpr uint32_t width = 32;
+  static constexpr uint32_t width = 32, runs = 8;
   struct alignas(64) Block {
     float x[width] = {}, y[width] = {}, z[width] = {};
     float nx[width] = {}, ny[width] = {}, nz[width] = {};  ///< shading normal on the side that it is lit from
@@ -76,6 +76,7 @@ void append(LightStore& store, const LightStore& more);
 /// What places of a store would bring to one camera vertex.
 struct Expectation {
   std::vector<std::array<float, LightStore::width>> values;  ///< per block
+  std::vector<std::array<float, LightStore::runs>> sums;     ///< of them, as choose reads them
   float sum = 0;
 };
 /// Draws from the places of some blocks in proportion to what they would bring unoccluded times the chance that they

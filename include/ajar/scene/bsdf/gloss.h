@@ -25,12 +25,12 @@ Gloss gloss_of(const Bsdf& bsdf, const Vec3& wo);
 /// never less than a tenth, so that no choice rests on the lobe alone.
 inline float shine(const Gloss& g, float n_o, float n_i, float between) {
   constexpr float least = 0.1f;
-  const float h2 = std::max(2 + 2 * between, 1e-6f), half = std::sqrt(h2), a2 = g.alpha * g.alpha;
-  const float n_h = std::min((n_o + n_i) / half, 1.0f), t = n_h * n_h * (a2 - 1) + 1;
+  const float h2 = std::max(2 + 2 * between, 1e-6f), half = std::sqrt(h2), a2 = g.alpha * g.alpha, sum = n_o + n_i;
+  const float t = std::min(sum * sum, h2) * (a2 - 1) + h2;  // times h2, as its square below
   const float fresnel = g.f0 + (1 - g.f0) * schlick_weight(0.5f * half);
-  // What both sides see of the facets, over 4 cos cos (Hammon 2017).
-  const float seen = 0.5f / std::max(2 * n_o * n_i * (1 - g.alpha) + (n_o + n_i) * g.alpha, 1e-6f);
-  const float lobe = g.peak * fresnel * seen * a2 / std::max(t * t, 1e-14f);  // (J6)
+  // What both sides see of the facets, over 4 cos cos (Hammon 2017), is 1/2 over this.
+  const float unseen = std::max(2 * n_o * n_i * (1 - g.alpha) + sum * g.alpha, 1e-6f);
+  const float lobe = 0.5f * g.peak * fresnel * a2 * h2 * h2 / (unseen * std::max(t * t, 1e-14f * h2 * h2));  // (J6)
   const float front = n_o > 0 && n_i > 0 ? 1.0f : 0.0f;
   return std::max(g.matt + front * lobe, least);
 }
