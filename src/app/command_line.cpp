@@ -14,7 +14,8 @@
 namespace ajar {
 namespace {
 
-// What the parser says of one word, with the cure: each pattern's groups stand where {} is.
+// What the parser says of one option, in words of our own and with the cure. Patterns of <regex> recurse with the
+// length of the text.
 std::string reworded(const std::string& what) {
   static const std::pair<std::regex, const char*> table[] = {
       {std::regex("Could not convert: (\\S+) = ([^]*)"), "$1 $2: is no number that fits here; write one, such as 8"},
@@ -24,8 +25,9 @@ std::string reworded(const std::string& what) {
       {std::regex("The following arguments? (?:was|were) not expected: ([^]*)"),
        "$1: more words than are asked for; leave them out, or put an option before them"},
       {std::regex("(\\S+): ([^]*) not in \\{([^]*)\\}"), "$1 $2: is none of $3; write one of these"}};
+  constexpr size_t longest = 4096;
   for (const auto& [pattern, words] : table)
-    if (std::regex_match(what, pattern)) return std::regex_replace(what, pattern, words);
+    if (what.size() <= longest && std::regex_match(what, pattern)) return std::regex_replace(what, pattern, words);
   return what;
 }
 

@@ -142,6 +142,7 @@ TEST_F(Program, WhatIsNoValueIsToldWithTheCure) {
     EXPECT_EQ(run("\"$ajar\" " + std::string(words)), 2) << words;
     EXPECT_EQ(said().find("ajar: " + std::string(says)), 0u) << words << ": " << said();
   }
+  EXPECT_EQ(run("\"$ajar\" compare a b $(head -c 100000 /dev/zero | tr '\\0' x)"), 2) << "however long it is";
 }
 
 TEST_F(Program, WordsThatAreNoCommandAreNamed) {
