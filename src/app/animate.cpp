@@ -246,7 +246,7 @@ void render_frames(Work& w) {
 void write_film(const Work& w) {
   const AnimateArguments& a = w.arguments;
   if (a.video.empty()) return;
-  make_video(w.png, w.shooting.timeline.frames, a.fps, a.video);
+  make_video(w.png, w.shooting.timeline.frames, a.fps.value_or(24), a.video);
   if (!a.quiet) say(stdout, "{}\n", a.video);
 }
 
@@ -271,6 +271,7 @@ Work prepare(const AnimateArguments& a) {
   Work w{a, {a.scene, a.size, a.lenient, make_timeline(a.frames, a.defines, a.keyframes, a.at), {}}};
   w.pattern = w.png = parse_pattern("-o", a.out);
   w.png.after.replace(w.png.after.size() - 4, 4, ".png");
+  if (a.fps && a.video.empty()) throw Error("--fps: is of a film; add --video OUT.mp4, or leave it out");
   if (!a.video.empty()) check_video(a.video);
   const FrameRange& r = w.shooting.timeline.frames;
   // Finds out what times there are, and that both ends can be loaded.

@@ -49,7 +49,8 @@ void check_references(const AnimateArguments& a, Shooting& shooting) {
   const FrameRange& r = shooting.timeline.frames;
   for (int f = r.first; f <= r.last; ++f)
     if (const std::string name = frame_name(reference, f); !fs::exists(name))
-      throw Error(fmt::format("--reference {}: there is no {}", a.reference, name));
+      throw Error(fmt::format("--reference {}: there is no {}; make it, or take a part of the --frames, such as 0-9/48",
+                              a.reference, name));
   std::shared_ptr<const Scene> scene;
   for (int f = r.first; f <= r.last; ++f) {
     if (!scene || !shooting.timeline.tracks.empty()) scene = load_frame(shooting, f);  // parameters may be of its size

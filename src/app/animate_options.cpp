@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "ajar/core/error.h"
 
 namespace ajar {
@@ -21,13 +19,11 @@ void check_learning(const AnimateArguments& a, const std::string& integrator) {
                                                 {"--forget", a.forget.has_value()}};
   for (const auto& [option, given] : asked)
     if (given && !is_guided(integrator))
-      throw Error(
-          fmt::format("{}: the integrator {} learns no fields; add --integrator guided-bdpt", option, integrator));
+      throw Error(fmt::format("{}: the integrator {} learns no fields; take {}", option, integrator, what_learns));
   if (a.teach && a.coherent == "off")
     throw Error("--teach: with --coherent off frames learn as they render; leave it out");
   if (a.forget && a.coherent != "on" && a.coherent != "fields")
     throw Error(fmt::format("--forget: with --coherent {} no fields are carried on; leave it out", a.coherent));
-  if (a.forget && !std::isfinite(*a.forget)) throw Error("--forget: not a number; write a share from 0 to 0.999");
 }
 
 }  // namespace
@@ -47,23 +43,24 @@ void add_options(CLI::App& command, AnimateArguments& arguments) {
   c->add_option("--spp", a->spp, "samples per pixel of each frame")->check(whole(1, 1 << 30));
   c->add_option("--time", a->time, "wall time for each frame: 5s, 1m");
   c->add_option("--cpu-time", a->cpu_time, "CPU time of all threads for each frame");
-  c->add_option("--seed", a->seed, "another seed, other noise")->check(whole(0, ~uint64_t(0)));
+  c->add_option("--seed", a->seed, "another seed, other noise (default 0)")->check(whole(0, ~uint64_t(0)));
   add_threads(*c, a->threads);
   c->add_option("--size", a->size, "WIDTHxHEIGHT instead of the scene's");
-  c->add_option("--max-depth", a->max_depth, "edges of the longest path; 1 sees lights alone, -1 is unlimited");
-  c->add_option("--coherent", a->coherent,
-                "what frames have in common: on (learned fields and random numbers), fields, numbers or off")
+  c->add_option("--max-depth", a->max_depth, max_depth_help);
+  c->add_option(
+       "--coherent", a->coherent,
+       "what frames have in common: on (learned fields and random numbers), fields, numbers or off (default on)")
       ->check(CLI::IsMember(std::vector<std::string>(std::begin(coherences), std::end(coherences))));
-  c->add_option("--forget", a->forget, "share of the fields' evidence that lives on to the next frame")
-      ->check(CLI::Range(0.0, 0.999));
-  c->add_option("--teach", a->teach, "passes that teach the fields of a frame before it is rendered")
+  c->add_option("--forget", a->forget, "share of the fields' evidence that lives on to the next frame (default 0.8)")
+      ->check(number(0, 0.999));
+  c->add_option("--teach", a->teach, "passes that teach the fields of a frame before it is rendered (default 2)")
       ->check(whole(1, 4096));
-  c->add_option("--guide", a->guide, "which subpaths the learned fields guide: both, camera or light")
+  c->add_option("--guide", a->guide, "which subpaths the learned fields guide: both, camera or light (default both)")
       ->check(CLI::IsMember({"both", "camera", "light"}));
   c->add_option("--field-memory", a->field_memory, "memory that learned fields may take: 512K, 32M (default), 1G");
   c->add_option("--reference", a->reference, "frames to measure error and flicker against: DIR/ref_%04d.exr");
   c->add_option("--video", a->video, "film to make of the frames with ffmpeg: OUT.mp4, .mov, .mkv, .webm, .gif ...");
-  c->add_option("--fps", a->fps, "of the film (24)")->check(CLI::Range(1.0, 240.0));
+  c->add_option("--fps", a->fps, "of the film (default 24)")->check(number(1, 240));
   c->add_flag("--half", a->half, "16-bit floats in the EXR");
   c->add_flag("--lenient", a->lenient, "leave out what the loader does not know, with a note");
   c->add_flag("-q,--quiet", a->quiet, "no progress, no notes");

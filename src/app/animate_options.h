@@ -21,7 +21,7 @@ struct AnimateArguments {
   std::optional<float> forget;
   int spp = 0, max_depth = not_given, threads = 0;
   uint64_t seed = 0;
-  double fps = 24;
+  std::optional<double> fps;
   bool half = false, quiet = false, lenient = false;
 };
 

@@ -25,15 +25,21 @@ void set_size(Camera& camera, const std::string& text) {
   set_size(camera, w, h);
 }
 
-LoadOptions load_options(const std::vector<std::string>& defines, bool lenient) {
+LoadOptions load_options(const std::vector<std::string>& defines, bool lenient, std::optional<double> at) {
+  if (at && !std::isfinite(*at)) throw Error(fmt::format("--at {}: not a time; write a number", *at));
   LoadOptions o;
-  o.lenient = lenient;
+  o.lenient = lenient, o.time = at;
   for (const std::string& d : defines) {
     const size_t equals = d.find('=');
     if (equals == 0 || equals == std::string::npos) throw Error(fmt::format("-D {}: write -D name=value", d));
     o.defines[d.substr(0, equals)] = d.substr(equals + 1);
   }
   return o;
+}
+
+void check_time(std::optional<double> at, const Scene& scene) {
+  if (at && scene.hints.first_time > scene.hints.last_time)
+    throw Error(fmt::format("--at {}: nothing in the scene has an <animation>; leave it out", *at));
 }
 
 size_t parse_bytes(const std::string& option, const std::string& text) {
@@ -66,6 +72,8 @@ void set_limits(const std::string& time, const std::string& cpu_time, int spp, c
 }
 
 void set_max_depth(int max_depth, const Scene& scene, RenderOptions& o) {
+  if (max_depth > deepest)
+    throw Error(fmt::format("--max-depth {}: paths end at {} edges; write that or less, or -1", max_depth, deepest));
   o.max_depth = max_depth != not_given ? max_depth : scene.hints.max_depth;
   if (o.max_depth < -1 || o.max_depth == 0)
     throw Error(fmt::format("--max-depth {}: -1 for unlimited, 1 or more edges otherwise", o.max_depth));
@@ -104,8 +112,24 @@ CLI::Validator whole(uint64_t least, uint64_t most) {
   return CLI::Validator(check, most < 1 << 20 ? fmt::format("{} to {}", least, most) : fmt::format("from {}", least));
 }
 
+CLI::Validator number(double least, double most) {
+  const auto check = [=](const std::string& text) -> std::string {
+    double x = 0;
+    const char* end = text.data() + text.size();
+    const auto [rest, failed] = std::from_chars(text.data(), end, x);
+    if (failed == std::errc() && rest == end && x >= least && x <= most) return {};
+    return fmt::format("{} is no number from {} to {}", text, least, most);
+  };
+  return CLI::Validator(check, fmt::format("{} to {}", least, most));
+}
+
 void add_threads(CLI::App& command, int& threads) {
   command.add_option("--threads", threads, "threads (default: all)")->check(whole(1, 4096));
+}
+
+void add_time(CLI::App& command, std::optional<double>& at) {
+  command.add_option("--at", at,
+                     "time at which the scene's <animation>s are read (default: when the shutter opens, else 0)");
 }
 
 void refuse_empty(CLI::App& command) {

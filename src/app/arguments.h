@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,10 @@ namespace ajar {
 
 /// WIDTHxHEIGHT in place of the camera's own size and crop window.
 void set_size(Camera& camera, const std::string& text);
-/// defines: name=value.
-LoadOptions load_options(const std::vector<std::string>& defines, bool lenient);
+/// defines: name=value. at: the time of its animations, where one is given.
+LoadOptions load_options(const std::vector<std::string>& defines, bool lenient, std::optional<double> at = {});
+/// Throws Error where a time is given, but nothing moves.
+void check_time(std::optional<double> at, const Scene& scene);
 /// 8M and the like; option names it in messages.
 size_t parse_bytes(const std::string& option, const std::string& text);
 /// Seconds from 90s, 5m, 1h or a bare number; option names it in messages.
@@ -32,10 +35,19 @@ inline constexpr int not_given = std::numeric_limits<int>::min();
 bool is_integrator(const std::string& name);
 /// Throws unless there is.
 void check_integrator(const std::string& name);
+/// Integrators that learn fields, for messages.
+inline constexpr const char* what_learns = "--integrator guided-bdpt, guided-path, guided-vcm or vpl";
 /// For check(): a whole number in that range; one that no type holds is refused as well.
 CLI::Validator whole(uint64_t least, uint64_t most);
+/// The same for any number.
+CLI::Validator number(double least, double most);
 /// The option --threads; 0 where it is not given: all.
 void add_threads(CLI::App& command, int& threads);
+/// The option --at of commands that look at one moment.
+void add_time(CLI::App& command, std::optional<double>& at);
+/// What --max-depth means, for help.
+inline constexpr const char* max_depth_help =
+    "edges of the longest path, up to 4096; 1 sees lights alone, -1 is unlimited: 4096 (default: the scene's)";
 /// Of a file's name, in lower case: ".png".
 std::string extension_of(const std::string& path);
 /// Whether the name ends with .png, in any case.

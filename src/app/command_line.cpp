@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <regex>
 
 #include "ajar/core/error.h"
 #include "arguments.h"
@@ -13,6 +14,23 @@
 namespace ajar {
 namespace {
 
+// What the parser says of one option, in words of our own and with the cure. Patterns of <regex> recurse with the
+// length of the text.
+std::string reworded(const std::string& what) {
+  static const std::pair<std::regex, const char*> table[] = {
+      {std::regex("Could not convert: (\\S+) = ([^]*)"), "$1 $2: is no number that fits here; write one, such as 8"},
+      {std::regex("(\\S+): \\d+ required [^]* missing"), "$1: has no value; write one after it"},
+      {std::regex("(\\S+): At least (\\d+) required but received (\\d+)"),
+       "$1: takes $2 values, not $3; write them all"},
+      {std::regex("The following arguments? (?:was|were) not expected: ([^]*)"),
+       "$1: more words than are asked for; leave them out, or put an option before them"},
+      {std::regex("(\\S+): ([^]*) not in \\{([^]*)\\}"), "$1 $2: is none of $3; write one of these"}};
+  constexpr size_t longest = 4096;
+  for (const auto& [pattern, words] : table)
+    if (what.size() <= longest && std::regex_match(what, pattern)) return std::regex_replace(what, pattern, words);
+  return what;
+}
+
 // A mistyped word is told first: what else is missing may be what it was to be.
 std::string explain(const CLI::App& command, const std::string& what) {
   for (const std::string& word : command.remaining())
@@ -20,7 +38,7 @@ std::string explain(const CLI::App& command, const std::string& what) {
   constexpr std::string_view twice = ": At Most 1 required but received ";
   if (const size_t at = what.find(twice); at != what.npos)
     return fmt::format("{}: given twice; leave one of them out", what.substr(0, at));
-  return what;
+  return reworded(what);
 }
 
 std::string explain(const CLI::App& app, const CLI::ParseError& error) {

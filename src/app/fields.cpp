@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "ajar/core/error.h"
 #include "ajar/core/files.h"
@@ -20,6 +21,8 @@ namespace {
 struct Arguments {
   std::string file, scene, out, size;
   std::vector<std::string> defines;
+  std::optional<double> at;
+  bool lenient = false;
 };
 
 void write_pictures(const Arguments& a, const Scene& scene, const Fields& fields) {
@@ -41,15 +44,16 @@ void write_pictures(const Arguments& a, const Scene& scene, const Fields& fields
 }
 
 void run(const Arguments& a) {
-  if (a.scene.empty() && !(a.out.empty() && a.size.empty() && a.defines.empty()))
-    throw Error("-o, --size and -D are for pictures, and these need the scene: add --scene SCENE.xml");
+  if (a.scene.empty() && !(a.out.empty() && a.size.empty() && a.defines.empty() && !a.at && !a.lenient))
+    throw Error("-o, --size, -D, --at and --lenient are for pictures, and these need the scene: add --scene SCENE.xml");
   if (!a.scene.empty() && a.out.empty()) throw Error("--scene is for pictures: add -o FOLDER");
   if (!a.out.empty()) check_folder(a.out);
   if (a.scene.empty()) {
     say(stdout, "{}", describe(load_fields(a.file)));
     return;
   }
-  Scene scene = load_scene(a.scene, load_options(a.defines, false));
+  Scene scene = load_scene(a.scene, load_options(a.defines, a.lenient, a.at));
+  check_time(a.at, scene);
   if (!a.size.empty()) set_size(scene.camera, a.size);
   const StoredFields stored = load_fields(a.file, scene_key(scene));
   say(stdout, "{}", describe(stored));
@@ -67,6 +71,8 @@ void add_fields(CLI::App& app) {
   c->add_option("-o,--out", a->out, "folder for cells.png, irradiance.png, importance.png, strata-q.png, strata-w.png");
   c->add_option("--size", a->size, "WIDTHxHEIGHT of the pictures instead of the scene's");
   c->add_option("-D", a->defines, "name=value: a parameter of the scene")->allow_extra_args(false);
+  add_time(*c, a->at);
+  c->add_flag("--lenient", a->lenient, "leave out what the loader does not know, as ajar render does");
   c->callback([a] { run(*a); });
 }
 

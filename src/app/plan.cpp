@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "ajar/scene/load.h"
 #include "arguments.h"
@@ -20,13 +21,15 @@ namespace {
 struct Arguments {
   std::string scene, size, cpu_time = "60s";
   std::vector<std::string> defines;
+  std::optional<double> at;
   uint64_t seed = 0;
   int threads = 0, max_depth = not_given;
   bool json = false, lenient = false;
 };
 
 void run_plan(const Arguments& a) {
-  Scene scene = load_scene(a.scene, load_options(a.defines, a.lenient));
+  Scene scene = load_scene(a.scene, load_options(a.defines, a.lenient, a.at));
+  check_time(a.at, scene);
   if (!a.size.empty()) set_size(scene.camera, a.size);
   const Accel accel(scene);
   RenderOptions options;
@@ -51,12 +54,13 @@ void add_plan(CLI::App& app) {
   CLI::App* c = app.add_subcommand("plan", "Tell which parts of the method a scene needs");
   c->add_option("scene", a->scene, "Mitsuba XML scene")->required();
   c->add_option("--cpu-time", a->cpu_time,
-                "budget of the render that is planned (60s); the pilot takes 5 % of it, more of a short one");
+                "budget of the render that is planned (default 60s); the pilot takes 4 % of it, more of a short one");
   c->add_option("--size", a->size, "WIDTHxHEIGHT instead of the scene's");
-  c->add_option("--max-depth", a->max_depth, "edges of the longest path; -1 is unlimited");
-  c->add_option("--seed", a->seed, "another seed")->check(whole(0, ~uint64_t(0)));
+  c->add_option("--max-depth", a->max_depth, max_depth_help);
+  c->add_option("--seed", a->seed, "another seed (default 0)")->check(whole(0, ~uint64_t(0)));
   add_threads(*c, a->threads);
   c->add_option("-D", a->defines, "name=value: a parameter of the scene")->allow_extra_args(false);
+  add_time(*c, a->at);
   c->add_flag("--json", a->json, "for machines");
   c->add_flag("--lenient", a->lenient, "leave out what the loader does not know, with a note");
   c->callback([a] { run_plan(*a); });

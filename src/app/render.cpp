@@ -40,21 +40,29 @@ void hold_against(const RenderArguments& a, const Scene& scene, const Accel& acc
   if (!a.quiet) say(stdout, "{}\n", describe(run.versus, state));
 }
 
+// Of what is learned, where learning is decided.
+std::string reason_of(const Plan& plan) {
+  for (const Part& part : plan.parts)
+    if (part.name == "camera-guiding") return part.why;
+  return "it suits the scene";
+}
+
 void plan_run(const RenderArguments& a, const Scene& scene, Run& run) {
   run.plan = make_plan(scene, run.options);
   const std::string& chosen = run.options.integrator = run.plan.integrator;
   run.options.learn_lights &= !is_guided(chosen);
   run.options.techniques &= has_strategies(chosen);
-  if (!a.quiet) say(stderr, "ajar: note: {} is used; ajar plan says why\n", chosen);
+  if (!a.quiet) say(stderr, "ajar: note: {} is used: {}\n", chosen, reason_of(run.plan));
   if (!is_guided(chosen) && !a.save_fields.empty())
     say(stderr, "ajar: note: nothing is learned, {} is not written\n", a.save_fields);
   if (!a.techniques.empty() && !run.options.techniques)
     say(stderr, "ajar: note: {} has no strategies to tell apart, {} is not written\n", chosen, a.techniques);
 }
 
-void check_time(double at, const Scene& scene) {
-  if (scene.hints.first_time > scene.hints.last_time)
-    throw Error(fmt::format("--at {}: nothing in the scene has an <animation>; leave it out", at));
+// Who names no integrator gets the scene's, and need not know that others learn where light comes from.
+void note_integrator(const RenderArguments& a, const Run& run) {
+  if (a.quiet || run.planned || !a.integrator.empty() || !a.plan.empty() || learns(run.options)) return;
+  say(stderr, "ajar: note: the scene asks for {}; --plan auto chooses what suits it\n", run.options.integrator);
 }
 
 bool has_samples(const Film& film) { return film.passes > 0 || film.chunks > 0; }
@@ -152,12 +160,11 @@ void run_render(RenderArguments a) {
   const double wall0 = wall_seconds(), cpu0 = process_cpu_seconds();
   if (a.out.empty()) a.out = std::filesystem::path(a.scene).stem().string() + ".exr";
   check_outputs(a);
-  LoadOptions load = load_options(a.defines, a.lenient);
-  if (a.at && !std::isfinite(*a.at)) throw Error(fmt::format("--at {}: not a time; write a number", *a.at));
-  load.time = a.at;
-  Scene scene = load_scene(a.scene, load);
+  if (!a.resume.empty() && a.integrator.empty() && a.plan.empty())
+    a.integrator = integrator_of(read_checkpoint_key(a.resume));
+  Scene scene = load_scene(a.scene, load_options(a.defines, a.lenient, a.at));
   check_apart(a, scene);
-  if (a.at) check_time(*a.at, scene);
+  check_time(a.at, scene);
   if (!a.size.empty()) set_size(scene.camera, a.size);
   Run run;
   run.scene_path = a.scene, run.out_path = a.out, run.content = scene.content, run.defines = a.defines;
@@ -176,6 +183,7 @@ void run_render(RenderArguments a) {
   run.build_seconds = wall_seconds() - wall1, run.build_cpu = process_cpu_seconds() - cpu1;
   run.accel_bytes = accel.bytes();
   catch_stop();
+  note_integrator(a, run);
   if (run.planned) plan_run(a, scene, run);
   run.light_choice = light_choice_of(a, run.options.integrator);
 

@@ -49,8 +49,7 @@ LearnOptions learn_options(const RenderArguments& a, const std::string& integrat
   if (!may_learn)
     for (const auto& [option, given] : asked)
       if (given && !(lights && std::string_view(option) == "--field-memory"))
-        throw Error(fmt::format("{}: the integrator {} learns no fields; add --integrator guided-bdpt or guided-path",
-                                option, integrator));
+        throw Error(fmt::format("{}: the integrator {} learns no fields; take {}", option, integrator, what_learns));
   if (!a.load_fields.empty() && !a.resume.empty())
     throw Error("--load-fields: a checkpoint brings its own fields; leave out either this or --resume");
   if (!a.load_fields.empty() && !a.field_structure.empty())
@@ -94,6 +93,12 @@ bool lists_parts(const RenderArguments& a) {
   return a.integrator.empty() && !a.plan.empty() && a.plan != "all" && a.plan != "auto";
 }
 
+// Fields are there to start from, and nobody names an integrator that could not.
+bool brings_fields(const RenderArguments& a, const Scene& scene) {
+  const bool chooses = a.plan == "auto" || (a.plan.empty() && scene.hints.integrator.empty());
+  return chooses && a.integrator.empty() && !a.load_fields.empty();
+}
+
 // What the user names, else what the plan's parts make, else what the scene names.
 void choose_integrator(const RenderArguments& a, const Scene& scene, RenderOptions& o) {
   if (!a.integrator.empty()) {
@@ -102,7 +107,7 @@ void choose_integrator(const RenderArguments& a, const Scene& scene, RenderOptio
   } else if (lists_parts(a)) {
     if (a.guide != "both") throw Error("--guide: the parts of --plan say what is guided; leave it out");
     apply_parts(split(a.plan), o);
-  } else if (a.plan == "all") {
+  } else if (a.plan == "all" || brings_fields(a, scene)) {
     o.integrator = "guided-bdpt";
   } else if (is_integrator(scene.hints.integrator)) {
     o.integrator = scene.hints.integrator;
@@ -134,19 +139,18 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
   c->add_option("--time", a->time, "wall time to render: 90s, 5m, 1h; with --resume, what was before counts");
   c->add_option("--cpu-time", a->cpu_time, "CPU time of all threads to render");
   c->add_option("--noise", a->noise, "relMSE to stop at, as estimated without a reference: 0.01");
-  c->add_option("--seed", a->seed, "another seed, other noise")->check(whole(0, ~uint64_t(0)));
+  c->add_option("--seed", a->seed, "another seed, other noise (default 0)")->check(whole(0, ~uint64_t(0)));
   add_threads(*c, a->threads);
   c->add_option("--size", a->size, "WIDTHxHEIGHT instead of the scene's; the crop window is dropped");
-  c->add_option("--max-depth", a->max_depth, "edges of the longest path; 1 sees lights alone, -1 is unlimited");
-  c->add_option("--roulette-depth", a->roulette_depth, "edges of a subpath before Russian roulette begins")
+  c->add_option("--max-depth", a->max_depth, max_depth_help);
+  c->add_option("--roulette-depth", a->roulette_depth, "edges of a subpath before Russian roulette begins (default 5)")
       ->check(whole(1, 1 << 20));
-  c->add_option("--heuristic", a->heuristic, "of multiple importance sampling")
+  c->add_option("--heuristic", a->heuristic, "of multiple importance sampling: power (default) or balance")
       ->check(CLI::IsMember({"power", "balance"}));
-  c->add_option("--sampler", a->sampler, "sobol (Owen-scrambled) or independent")
+  c->add_option("--sampler", a->sampler, "sobol (Owen-scrambled; default) or independent")
       ->check(CLI::IsMember({"sobol", "independent"}));
   c->add_option("-D", a->defines, "name=value: a parameter of the scene")->allow_extra_args(false);
-  c->add_option("--at", a->at,
-                "time at which the scene's <animation>s are read (default: when the shutter opens, else 0)");
+  add_time(*c, a->at);
   c->add_option("--aov", a->features, "more channels in the EXR: albedo,normal,position,variance")
       ->delimiter(',')
       ->check(CLI::IsMember({"albedo", "normal", "position", "variance"}));
@@ -156,8 +160,9 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
       "--techniques", a->techniques,
       "folder for an image of every strategy (s, t) with s + t <= 11, weighted and raw; those there are removed");
   c->add_option("--checkpoint", a->checkpoint, "file to save the state to, every minute and at the end");
-  c->add_option("--resume", a->resume, "checkpoint to go on from; its time and samples count in all limits");
-  c->add_option("--guide", a->guide, "which subpaths the learned fields guide: both, camera or light")
+  c->add_option("--resume", a->resume,
+                "checkpoint to go on from, by its own integrator; its time and samples count in all limits");
+  c->add_option("--guide", a->guide, "which subpaths the learned fields guide: both (default), camera or light")
       ->check(CLI::IsMember({"both", "camera", "light"}));
   c->add_option("--field-memory", a->field_memory, "memory that all that is learned may take: 512K, 8M (default), 1G");
   c->add_option("--field-structure", a->field_structure, "of learned fields: adaptive (default), grid or probes")
@@ -173,8 +178,8 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
       ->check(whole(2, 1 << 20));
   c->add_option(
        "--light-choice", a->light_choice,
-       "of next-event estimation among lights: uniform, power, tree, or learned per cell (default: learned for "
-       "guided integrators, else tree)")
+       "of next-event estimation among lights: uniform, power, tree, or learned per cell by path, bdpt and guided "
+       "integrators (default: learned for guided integrators, else tree)")
       ->check(CLI::IsMember(listed(light_choice_names)));
   c->add_option("--merge-radius", a->merge_radius,
                 "of vcm, guided-vcm and photon in the first pass, in pixels (default 5); it shrinks; 0: no merging");
@@ -193,17 +198,29 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
   c->add_flag("-q,--quiet", a->quiet, "no progress, no notes");
 }
 
+namespace {
+
+// Whether path tracing might ever take over from it.
+bool leaves_out(const std::string& integrator) {
+  RenderOptions o;
+  o.integrator = integrator, o.leaves_out = true;
+  return may_leave_out(o);
+}
+
+}  // namespace
+
 bool plans(const RenderArguments& a, const Scene& scene) {
-  if (a.plan.empty()) return a.integrator.empty() && scene.hints.integrator.empty() && a.resume.empty();
+  if (a.plan.empty())
+    return a.integrator.empty() && scene.hints.integrator.empty() && a.resume.empty() && a.load_fields.empty();
   if (!a.integrator.empty() && a.plan == "none") return false;
   if (!a.integrator.empty() && a.plan != "all")
     throw Error("--plan: chooses the integrator; leave out either this or --integrator, or write --plan all");
-  if (!a.integrator.empty() && !is_guided(a.integrator))
+  if (!a.integrator.empty() && !leaves_out(a.integrator))
     throw Error(fmt::format("--plan all: {} leaves nothing out; leave it out", a.integrator));
   if (a.plan != "auto") return false;
   if (!a.resume.empty())
-    throw Error("--plan auto: a checkpoint goes on as it began; name its integrator, which its record has");
-  return true;
+    throw Error("--plan auto: a checkpoint goes on with the integrator that it began with; leave out --plan");
+  return a.load_fields.empty();
 }
 
 std::string usual_light_choice(const std::string& integrator) { return is_guided(integrator) ? "learned" : "tree"; }
@@ -235,8 +252,12 @@ RenderOptions render_options(const RenderArguments& a, Scene& scene, bool planne
   o.learn = learn_options(a, o.integrator, planned || is_guided(o.integrator));
   if (lists_parts(a)) o.learn.guided = guided;
   o.learn_lights = a.light_choice == "learned" && !is_guided(o.integrator);
+  if (o.integrator == "light" && (a.light_choice == "tree" || a.light_choice == "learned"))
+    throw Error(fmt::format(
+        "--light-choice {}: light chooses its lights by power or uniform; leave it out, or take one", a.light_choice));
   if (o.learn_lights && o.integrator != "path" && o.integrator != "bdpt")
-    throw Error(fmt::format("--light-choice learned: {} does no next-event estimation; leave it out", o.integrator));
+    throw Error(fmt::format("--light-choice learned: {} learns no choice of lights; take path, bdpt or what guides",
+                            o.integrator));
   if (a.light_choice == "uniform" || a.light_choice == "power")
     set_light_choice(scene, a.light_choice == "uniform" ? LightChoice::uniform : LightChoice::power);
   if (!a.versus.empty()) check_versus(a.versus, planned ? "what is planned" : o.integrator);

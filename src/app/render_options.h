@@ -29,7 +29,8 @@ struct RenderArguments {
 
 /// Adds them to a command, which must not outlive them.
 void add_options(CLI::App& command, RenderArguments& arguments);
-/// Whether the plan chooses: where the user asks for it, or where neither he nor the scene names an integrator.
+/// Whether the plan chooses: where the user asks for it, or where neither he nor the scene names an integrator; not
+/// where fields are loaded, which choose guided-bdpt.
 bool plans(const RenderArguments&, const Scene&);
 /// Where the user says nothing.
 std::string usual_light_choice(const std::string& integrator);

@@ -144,4 +144,12 @@ std::string checkpoint_key(const Run& run, const Film& film) {
                      std::filesystem::path(run.scene_path).filename().string(), run.content, in_text(o));
 }
 
+std::string integrator_of(const std::string& checkpoint_key) {
+  const size_t sum = checkpoint_key.find(",files with checksum ");
+  const size_t options = checkpoint_key.find('{', std::min(sum, checkpoint_key.size()));
+  if (options == checkpoint_key.npos) return {};
+  const auto json = nlohmann::json::parse(checkpoint_key.substr(options), nullptr, false);
+  return json.is_object() && json.contains("integrator") && json["integrator"].is_string() ? json["integrator"] : "";
+}
+
 }  // namespace ajar

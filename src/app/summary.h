@@ -38,5 +38,7 @@ std::string record_of(const nlohmann::ordered_json& summary);
 Metadata metadata(const Run& run, const RenderState& state);
 /// Everything that decides the bytes of the image but the number of passes.
 std::string checkpoint_key(const Run& run, const Film& film);
+/// What a checkpoint of that key was rendered with; empty where the key is none of those above.
+std::string integrator_of(const std::string& checkpoint_key);
 
 }  // namespace ajar

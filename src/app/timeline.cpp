@@ -235,10 +235,13 @@ Timeline make_timeline(const std::string& frames, const std::vector<std::string>
       t.constant[name] = value;
   }
   if (at.empty()) return t;
-  const auto span = parse_sweep("--at " + at, at, 2);
-  if (!span || span->keys.size() != 2 || span->keys[0].values.size() != 1 || span->smooth)
-    throw Error(fmt::format("--at {}: write FROM..TO, the scene's time at the first and the last frame", at));
-  t.has_time = true, t.first_time = span->keys[0].values[0], t.last_time = span->keys[1].values[0];
+  const size_t dots = std::min(at.find(".."), at.size());
+  const auto from = to_numbers(std::string_view(at).substr(0, dots));
+  const auto to = to_numbers(std::string_view(at).substr(std::min(dots + 2, at.size())));
+  if (!from || !to || from->size() != 1 || to->size() != 1)
+    throw Error(
+        fmt::format("--at {}: write FROM..TO, the scene's time at the first and the last frame, such as 0..2", at));
+  t.has_time = true, t.first_time = from->front(), t.last_time = to->front();
   return t;
 }
 

@@ -58,6 +58,8 @@ void Writer::bytes(const void* data, size_t n) {
 Reader::Reader(const std::string& file, const FileKind& file_kind) : path(file), kind(file_kind) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {
+    if (std::filesystem::is_directory(path, error))
+      throw Error(fmt::format("{}: is a folder; name a {}", path, kind.name));
     if (!error || error == std::errc::no_such_file_or_directory)
       throw Error(fmt::format("{}: no such {}; {}", path, kind.name, kind.make));
     throw Error(fmt::format("{}: this {} cannot be read ({})", path, kind.name, error.message()));

@@ -99,13 +99,20 @@ void save_checkpoint(const std::string& path, const std::string& key, const Rend
   });
 }
 
+std::string read_checkpoint_key(const std::string& path) {
+  Reader r(path, checkpoint_kind);
+  std::string key;
+  r.text(key);
+  return key;
+}
+
 void load_checkpoint(const std::string& path, const std::string& key, RenderState& state) {
   Reader r(path, checkpoint_kind);
   std::string stored;
   r.text(stored);
   if (stored != key)
-    throw Error(fmt::format("{}: made with another scene or other options: {}; {}", path, difference(stored, key),
-                            checkpoint_kind.cure));
+    throw Error(fmt::format("{}: made with another scene or other options: {}; give what it was made with, or {}", path,
+                            difference(stored, key), checkpoint_kind.cure));
   const size_t pixels = state.film.pixels();
   film_fields(r, state.film);
   r.require(is_sound(state.film, pixels));

@@ -125,6 +125,10 @@ void run_pilot(Scene& scene, const Accel& accel, const RenderOptions& options, c
 
 void apply_parts(const std::vector<std::string>& parts, RenderOptions& options) {
   bool light = false, camera_guided = false, light_guided = false;
+  for (const std::string& part : parts)
+    if ((part == "all" || part == "auto" || part == "none") && parts.size() > 1)
+      throw Error(
+          fmt::format("--plan {}: {} stands alone; leave out either it or the rest", fmt::join(parts, ","), part));
   for (const std::string& part : parts) {
     if (part == "light-subpaths")
       light = true;

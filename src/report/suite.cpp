@@ -45,6 +45,7 @@ std::string if_it_trains(const RenderOptions& o) {
                            : if_guided(o);
 }
 std::string if_it_chooses_lights(const RenderOptions& o) {
+  if (o.integrator == "light") return "light chooses its lights by their power alone; leave it out";
   if (!o.learn_lights || is_guided(o.integrator) || o.integrator == "path" || o.integrator == "bdpt") return {};
   return fmt::format("{} learns no choice of lights; leave it out", o.integrator);
 }

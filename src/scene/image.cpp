@@ -181,7 +181,9 @@ Image load_image(const std::string& path, bool raw, float gamma, bool mend) {
   OIIO::ImageSpec config;
   config.attribute("oiio:UnassociatedAlpha", 1);  // colours as they are stored
   const auto input = OIIO::ImageInput::open(path, &config);
-  if (!input) throw Error(fmt::format("{}: cannot read the image ({})", path, OIIO::geterror()));
+  if (!input)
+    throw Error(fmt::format("{}: cannot be read as an image ({}); write it again, or convert it to EXR", path,
+                            OIIO::geterror()));
   const OIIO::ImageSpec spec = input->spec();
   check_size(path, spec);
   const Layout layout = layout_of(spec);

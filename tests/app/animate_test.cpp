@@ -81,7 +81,8 @@ TEST(Timeline, WrongOnesAreErrors) {
   EXPECT_SAYS(sweep("door=5..60:quick"), "neither linear nor smooth");
   EXPECT_SAYS(sweep("sun=1 2..3"), "the same number of numbers");
   EXPECT_SAYS(error_of([] { make_timeline("4", {"x=1..2", "x=3"}, "", ""); }), "given twice");
-  EXPECT_SAYS(error_of([] { make_timeline("4", {}, "", "soon"); }), "--at soon");
+  for (const char* at : {"soon", "x..1", "0..", "0..1..2", "0 1..2 3", "0..1:smooth"})
+    EXPECT_SAYS(error_of([&] { make_timeline("4", {}, "", at); }), "--at " + std::string(at) + ": write FROM..TO, ");
 }
 
 TEST_F(Animate, FramesDoNotDependOnHowTheWorkIsSplit) {
@@ -298,7 +299,10 @@ TEST_F(Animate, SaysWhatIsWrong) {
   EXPECT_SAYS(wrong({"--integrator", "path", "--guide", "light"}), "learns no fields");
   EXPECT_SAYS(wrong({"--integrator", "path", "--teach", "1"}), "--teach: the integrator path learns no fields");
   EXPECT_SAYS(wrong({"--integrator", "path", "--forget", "0.5"}), "--forget: the integrator path learns no fields");
-  EXPECT_SAYS(wrong({"--forget", "nan"}), "--forget: not a number");
+  EXPECT_SAYS(wrong({"--forget", "nan"}), "--forget: nan is no number from 0 to 0.999");
+  EXPECT_SAYS(wrong({"--fps", "12"}), "--fps: is of a film; add --video");
+  EXPECT_SAYS(wrong({"--fps", "1000"}), "--fps: 1000 is no number from 1 to 240");
+  EXPECT_SAYS(wrong({"--reference", in("none_%d.exr")}), "none_0.exr; make it, or take a part of the --frames");
   EXPECT_SAYS(wrong({"--coherent", "off"}), "--teach: with --coherent off");
   EXPECT_SAYS(wrong({"--coherent", "numbers", "--forget", "0.5"}), "--forget: with --coherent numbers");
   EXPECT_SAYS(wrong({"--at", "nan"}), "--at nan: write FROM..TO");

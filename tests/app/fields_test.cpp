@@ -151,12 +151,12 @@ TEST_F(FieldsUsed, WhatMakesNoSenseIsAnError) {
       {{"--load-fields", fields}, "bdpt", "--load-fields: the integrator bdpt learns no fields"},
       {{"--guide", "light"}, "light", "--guide: the integrator light learns no fields"},
       {{"--field-memory", "8M"}, "bdpt", "--field-memory: the integrator bdpt learns no fields"},
-      {{"--guide", "neither"}, "guided-bdpt", "--guide: neither not in"},
+      {{"--guide", "neither"}, "guided-bdpt", "--guide neither: is none of both"},
       {{"--guide", "light"}, "guided-path", "--guide light: guided-path has no light subpaths"},
       {{"--field-structure", "grid"}, "bdpt", "--field-structure: the integrator bdpt learns no fields"},
-      {{"--field-structure", "octree"}, "guided-bdpt", "--field-structure: octree not in"},
-      {{"--field-rule", "mean"}, "guided-bdpt", "--field-rule: mean not in"},
-      {{"--field-rate", "fast"}, "guided-bdpt", "--field-rate: fast not in"},
+      {{"--field-structure", "octree"}, "guided-bdpt", "--field-structure octree: is none of adaptive"},
+      {{"--field-rule", "mean"}, "guided-bdpt", "--field-rule mean: is none of"},
+      {{"--field-rate", "fast"}, "guided-bdpt", "--field-rate fast: is none of"},
       {{"--train", "3"}, "guided-bdpt", "--train 3: passes come in pairs"},
       {{"--train", "4"}, "path", "--train: the integrator path learns no fields"},
       {{"--no-next-event"}, "guided-bdpt", "--no-next-event: guided-bdpt needs it"},
@@ -173,6 +173,48 @@ TEST_F(FieldsUsed, WhatMakesNoSenseIsAnError) {
     EXPECT_FALSE(std::filesystem::exists(out)) << c.says;
   }
   EXPECT_FALSE(std::filesystem::exists(state));
+}
+
+// Where the plan chooses, fields that are there choose guided-bdpt, however little time there is.
+TEST_F(FieldsUsed, FieldsToStartFromArePlannedWith) {
+  render({"--spp", "1", "--save-fields", fields});
+  const auto planned = [&](const std::string& from) {
+    return error([&] {
+      run_command_line(
+          {"render", box, "-q", "--size", "8x8", "--spp", "1", "--plan", "auto", "--load-fields", from, "-o", out});
+    });
+  };
+  EXPECT_EQ(planned(fields), "");
+  std::ifstream record(folder / "image.json");
+  const auto json = nlohmann::json::parse(record);
+  EXPECT_EQ(json["options"]["integrator"], "guided-bdpt");
+  EXPECT_EQ(json["options"]["load_fields"], fields);
+  std::filesystem::remove(out);
+  EXPECT_NE(planned(fields + "x").find("x: no such file of fields"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+// A scene that is loaded with help, and moves, is shown as it was rendered.
+TEST_F(FieldsUsed, ArePicturedInTheSceneAsItWasRendered) {
+  const std::string scene = (folder / "moves.xml").string();
+  std::ofstream(scene) << R"(<scene version="3.0.0"><sensor type="perspective"/><shape type="hair"/>
+    <shape type="rectangle"><transform name="to_world"><translate z="9"/></transform></shape>
+    <shape type="sphere"><emitter type="area"/><animation name="to_world">
+      <transform time="0"><translate z="4"/></transform><transform time="1"><translate z="5"/></transform>
+    </animation></shape></scene>)";
+  run_command_line({"render", scene, "-q", "--size", "8x8", "--integrator", "guided-bdpt", "--spp", "1", "--lenient",
+                    "--at", "1", "-o", out, "--save-fields", fields});
+  const auto shown = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"fields", fields, "--scene", scene, "-o", folder.string()});
+    testing::internal::CaptureStdout();
+    const std::string what = error([&] { run_command_line(more); });
+    testing::internal::GetCapturedStdout();
+    return what;
+  };
+  EXPECT_NE(shown({"--at", "1"}).find("unknown shape"), std::string::npos);
+  EXPECT_NE(shown({"--lenient"}).find("fields of another scene"), std::string::npos);
+  EXPECT_EQ(shown({"--lenient", "--at", "1"}), "");
+  EXPECT_TRUE(std::filesystem::exists(folder / "cells.png"));
 }
 
 TEST(FieldMemory, IsASize) {
@@ -215,7 +257,9 @@ TEST_F(FieldsUsed, PicturesNeedTheRightSceneAndAFolder) {
   EXPECT_NE(refused({"--scene", box, "-o", fields}).find(fields), std::string::npos) << "a file, not a folder";
   EXPECT_NE(refused({"--scene", box}).find("add -o FOLDER"), std::string::npos);
   EXPECT_NE(refused({"-o", folder.string()}).find("add --scene"), std::string::npos);
-  EXPECT_NE(refused({"-D", "door=5"}).find("add --scene"), std::string::npos);
+  for (const std::vector<std::string>& more : {std::vector<std::string>{"-D", "door=5"}, {"--lenient"}, {"--at", "1"}})
+    EXPECT_NE(refused(more).find("add --scene"), std::string::npos) << more[0];
+  EXPECT_NE(refused({"--scene", box, "-o", folder.string(), "--at", "1"}).find("--at 1: nothing"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(folder / "cells.png"));
 }
 

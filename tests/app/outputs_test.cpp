@@ -88,6 +88,11 @@ TEST_F(Outputs, WrongOnesAreErrorsBeforeTheRender) {
       {{"--integrator", "light", "--techniques", "t"}, "--techniques: light has no strategies"},
       {{"--plan", "auto", "--integrator", "bdpt"}, "leave out either"},
       {{"--plan", "all", "--integrator", "bdpt"}, "--plan all: bdpt leaves nothing out"},
+      {{"--plan", "all", "--integrator", "vpl"}, "--plan all: vpl leaves nothing out"},
+      {{"--light-choice", "learned", "--integrator", "vcm"}, "vcm learns no choice of lights; take path, bdpt or"},
+      {{"--light-choice", "tree", "--integrator", "light"}, "light chooses its lights by power or uniform"},
+      {{"--max-depth", "5000"}, "--max-depth 5000: paths end at 4096 edges"},
+      {{"--save-fields", "f"}, "bdpt learns no fields; take --integrator guided-bdpt, guided-path, guided-vcm or vpl"},
   };
   const std::string scene = kit::bytes_of("box.xml");
   for (const Case& c : cases) {
@@ -186,6 +191,46 @@ TEST_F(Outputs, ResumingWithLessThanThereIsTellsSo) {
   EXPECT_NE(said.find("[########################]"), std::string::npos) << "a render that is done is whole: " << said;
 }
 
+// What it is rendered with, whatever the scene names: box.xml asks for path.
+TEST_F(Outputs, AResumedRenderKeepsItsIntegrator) {
+  const auto render = [](Words more) {
+    more.insert(more.begin(), {"render", "box.xml", "-q", "--size", "8x8", "--max-depth", "3", "-o", "a.exr"});
+    return kit::error_of([&] { run_command_line(more); });
+  };
+  const auto integrator = [] { return nlohmann::json::parse(kit::bytes_of("a.json"))["options"]["integrator"]; };
+  EXPECT_EQ(render({"--plan", "all", "--spp", "4"}), "");
+  const std::vector<float> straight = read_picture("a.exr").pixels;
+  EXPECT_EQ(render({"--plan", "all", "--spp", "2", "--checkpoint", "guided"}), "");
+  EXPECT_EQ(render({"--resume", "guided", "--spp", "4"}), "");
+  EXPECT_EQ(integrator(), "guided-bdpt");
+  EXPECT_EQ(read_picture("a.exr").pixels, straight);
+  EXPECT_EQ(render({"--plan", "auto", "--spp", "2", "--checkpoint", "planned"}), "");
+  EXPECT_EQ(integrator(), "bdpt") << "too few samples to learn";
+  EXPECT_EQ(render({"--resume", "planned", "--spp", "4"}), "");
+  EXPECT_EQ(integrator(), "bdpt");
+  const std::string other = render({"--resume", "planned", "--integrator", "path", "--spp", "4"});
+  EXPECT_NE(other.find("{\"integrator\":\"bdpt\", here"), std::string::npos) << other;
+  EXPECT_NE(other.find("give what it was made with, or start again without --resume"), std::string::npos) << other;
+  EXPECT_NE(render({"--resume", "planned", "--plan", "auto"}).find("leave out --plan"), std::string::npos);
+  EXPECT_EQ(render({"--resume", "none"}), "none: no such checkpoint; render once with --checkpoint");
+}
+
+TEST_F(Outputs, WhatIsRenderedWithUnaskedIsTold) {
+  const auto said = [](Words more) {
+    more.insert(more.begin(), {"render", "box.xml", "--size", "8x8", "--max-depth", "3", "--spp", "2", "-o", "a.exr"});
+    testing::internal::CaptureStdout();
+    testing::internal::CaptureStderr();
+    run_command_line(more);
+    testing::internal::GetCapturedStdout();
+    return testing::internal::GetCapturedStderr();
+  };
+  const std::string note = "note: the scene asks for path; --plan auto chooses what suits it\n";
+  EXPECT_NE(said({}).find(note), std::string::npos);
+  for (const Words& asked : {Words{"-q"}, {"--integrator", "path"}, {"--plan", "none"}, {"--plan", "auto"}})
+    EXPECT_EQ(said(asked).find("asks for"), std::string::npos) << asked.back();
+  EXPECT_NE(said({"--plan", "auto"}).find("note: bdpt is used: there is no time to learn\n"), std::string::npos);
+}
+
 TEST_F(Outputs, VersusIsCheckedBeforeAPlannedRender) {
   for (const char* other : {"nope", "guided-bdpt"}) {
     const std::string said = kit::error_of([&] {
@@ -214,6 +259,7 @@ TEST_F(Outputs, PartsOfAPlanAreCheckedAsAnIntegratorIs) {
   EXPECT_NE(said({"--plan", "none", "--save-fields", "f"}).find("path learns no fields"), std::string::npos);
   EXPECT_NE(said({"--plan", "light-subpaths", "--final-gather", "4"}).find("--final-gather: bdpt"), std::string::npos);
   EXPECT_NE(said({"--plan", "none", "--guide", "light"}).find("--guide: the parts"), std::string::npos);
+  EXPECT_NE(said({"--plan", "all,light-subpaths"}).find("all stands alone"), std::string::npos);
   EXPECT_EQ(count(), 3u);
   testing::internal::CaptureStdout();
   EXPECT_EQ(said({"--plan", "light-subpaths,camera-guiding", "--save-fields", "f"}), "");

@@ -131,6 +131,20 @@ TEST_F(Program, MistypedOptionsAreToldFirst) {
   }
 }
 
+TEST_F(Program, WhatIsNoValueIsToldWithTheCure) {
+  for (const auto& [words, says] :
+       {std::pair{"render box.xml --max-depth x", "--max-depth x: is no number that fits here; write one"},
+        {"render box.xml -D", "-D: has no value; write one after it"},
+        {"compare a b --crop 1", "--crop: takes 4 values, not 1; write them all"},
+        {"compare a b c", "c: more words than are asked for; leave them out"},
+        {"render box.xml --heuristic best", "--heuristic best: is none of power,balance; write one"},
+        {"animate box.xml -o f_%d.exr --forget 1", "--forget: 1 is no number from 0 to 0.999"}}) {
+    EXPECT_EQ(run("\"$ajar\" " + std::string(words)), 2) << words;
+    EXPECT_EQ(said().find("ajar: " + std::string(says)), 0u) << words << ": " << said();
+  }
+  EXPECT_EQ(run("\"$ajar\" compare a b $(head -c 100000 /dev/zero | tr '\\0' x)"), 2) << "however long it is";
+}
+
 TEST_F(Program, WordsThatAreNoCommandAreNamed) {
   EXPECT_EQ(run("\"$ajar\" rendr box.xml"), 2);
   EXPECT_EQ(said().find("ajar: rendr: there is no such command; known are render, "), 0u) << said();

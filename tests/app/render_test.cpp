@@ -251,6 +251,8 @@ TEST(PlanCommand, SaysWhatItKnows) {
   };
   EXPECT_EQ(plan({"--max-depth", "-7"}), "--max-depth -7: -1 for unlimited, 1 or more edges otherwise");
   EXPECT_EQ(plan({"--max-depth", "0"}), "--max-depth 0: -1 for unlimited, 1 or more edges otherwise");
+  EXPECT_EQ(plan({"--max-depth", "4097"}), "--max-depth 4097: paths end at 4096 edges; write that or less, or -1");
+  EXPECT_EQ(plan({"--at", "1"}), "--at 1: nothing in the scene has an <animation>; leave it out");
   EXPECT_EQ(plan({"--cpu-time", "1s"}), "ajar: note: --cpu-time 1s is too short to learn anything; give 10s or more\n");
   Plan black;
   black.pilot.emplace();

@@ -230,7 +230,11 @@ TEST_F(SuiteFile, KeysThatDoNothingAreErrors) {
   expect({{"integrator", "vpl"}, {"guide", "camera"}}, "guide: vpl guides light subpaths alone");
   expect({{"integrator", "vpl"}, {"guide", "both"}}, "");
   expect({{"integrator", "guided-bdpt"}, {"train", 3}}, "train: is 3; passes come in pairs");
-  expect({{"integrator", "light"}, {"light_choice", "learned"}}, "light_choice: light learns no choice of lights");
+  for (const char* choice : {"tree", "learned"})
+    expect({{"integrator", "light"}, {"light_choice", choice}},
+           "light_choice: light chooses its lights by their power");
+  expect({{"integrator", "vcm"}, {"light_choice", "learned"}}, "light_choice: vcm learns no choice of lights");
+  expect({{"integrator", "vcm"}, {"light_choice", "tree"}}, "");
   expect({{"integrator", "bdpt"}, {"merge_radius", 2}}, "merge_radius: bdpt merges nothing");
   expect({{"integrator", "vcm"}, {"merge_radius", 0}}, "");
   expect({{"integrator", "photon"}, {"merge_radius", 0}}, "merge_radius: is 0; photon needs");

@@ -7,7 +7,7 @@
 
 namespace ajar {
 
-/// Every segment between two vertices that scatter teaches four entries, whoever traced it: Q and W at either end (M4);
+/// Every segment between two vertices that scatter teaches four entries, whoever traced it: Q and W at either end (G2);
 /// with Rule::returned one, the field of its side where it was sent from.
 void record_subpath(const Fields& fields, Training& training, Sightings& sightings, const Subpath& subpath, Side side);
 

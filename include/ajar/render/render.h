@@ -58,6 +58,8 @@ void save_checkpoint(const std::string& path, const std::string& key, const Rend
 /// Fills a state that start_render made for the same scene and options. Throws Error when the file is damaged, of
 /// another version, of another key, or lacks the images of strategies that the state keeps.
 void load_checkpoint(const std::string& path, const std::string& key, RenderState& state);
+/// The key that a checkpoint was saved with. Throws Error where the file is none, or of another version.
+std::string read_checkpoint_key(const std::string& path);
 
 /// First-hit features, averaged over a few jittered samples per pixel: "Albedo.R" ..., "N.X" ... (world shading
 /// normal), "P.X" ... (world position); zero where nothing is hit. Channel names are pbrt's.

@@ -86,13 +86,14 @@ void difftrans(Params& p, Material& m) { m.transmittance = main_slot(p, {"transm
 void conductor(Params& p, Material& m) {
   m.specular = main_slot(p, {"specular_reflectance"}, 1.0f, Colour::reflectance);
   const bool given = has(p, "eta") || has(p, "k");
-  const std::string name = text(p, "material", given || !p.loader.document.old ? "none" : "Cu");
+  const char* usual = given || !p.loader.document.old ? "none" : "Cu";
+  const std::string name = text(p, "material", usual);
   const Metal* metal = find_metal(name);
   if (metal == nullptr) {
     unsupported(p.loader, p.node,
                 fmt::format("unknown material \"{}\"; known are {}", name.substr(0, 80), metal_names()),
-                "copper in its place");
-    metal = find_metal("Cu");
+                fmt::format("{} in its place", usual));
+    metal = find_metal(usual);
   }
   const float outside = float(index_of(p, "ext_eta", p.loader.document.old ? air : 1));
   m.eta = colour(p, "eta", metal->eta, Colour::ratio) / outside;
@@ -353,7 +354,7 @@ uint32_t stand_in(Loader& loader, const Node& node) {
   Params p(loader, node);
   const std::vector<const Node*> inner = nested(p, "bsdf");
   const char* hint = node.type == "mixture" ? ", mixturebsdf today" : "";
-  unsupported(loader, node, fmt::format("unknown bsdf{}; supported: {}", hint, known),
+  unsupported(loader, node, fmt::format("{}{}; supported: {}", unknown(node), hint, known),
               inner.empty() ? "grey diffuse in its place" : "what is nested in it in its place");
   if (!inner.empty()) return load_bsdf(loader, *inner.front());
   return add_material(loader, node, {});

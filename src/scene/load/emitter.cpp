@@ -157,7 +157,7 @@ void load_emitter(Loader& loader, const Node& node, uint32_t shape) {
   const auto entry =
       std::find_if(std::begin(entries), std::end(entries), [&](const Entry& e) { return node.type == e.type; });
   if (!is_area && entry == std::end(entries))
-    return unsupported(loader, node, fmt::format("unknown emitter; {}", supported), "left out");
+    return unsupported(loader, node, fmt::format("{}; {}", unknown(node), supported), "left out");
   if (is_area && shape == none) fail(loader, node, "an area light belongs inside the <shape> that emits");
   if (!is_area && shape != none)
     return unsupported(loader, node, "only an area light can be inside a shape", "left out");

@@ -66,8 +66,11 @@ const Node* sensor_of(Loader& loader) {
 
 // In its place, as Mitsuba has it: along z, from where all of the scene is within 45 degrees.
 void add_sensor(Scene& scene, const std::string& name) {
-  if (!add_camera(scene))
-    throw Error(fmt::format("{}: the scene has no camera: add <sensor type=\"perspective\"> with a to_world", name));
+  if (!add_camera(scene)) {
+    const bool empty = scene.shapes.empty() && scene.instances.empty();
+    throw Error(fmt::format("{}: the scene has no camera{}: add <sensor type=\"perspective\"> with a to_world{}", name,
+                            empty ? " and no shape" : "", empty ? ", and <shape>s to see" : ""));
+  }
   scene.notes.push_back(name +
                         ": the scene has no camera: all of it is seen, along +z; add <sensor type=\"perspective\">");
 }

@@ -58,6 +58,8 @@ void note(Loader& loader, const Node& node, const std::string& text) {
     loader.scene.notes.push_back(one_line(place(loader.document, node) + ": " + text));
 }
 
+std::string unknown(const Node& node) { return node.type.empty() ? "has no type" : "unknown " + node.tag; }
+
 void unsupported(Loader& loader, const Node& node, const std::string& text, const std::string& instead) {
   if (!loader.lenient) fail(loader, node, text + "; with --lenient: " + instead);
   note(loader, node, text + ": " + instead);

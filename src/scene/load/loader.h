@@ -50,6 +50,8 @@ struct Loader {
 [[noreturn]] void fail(const Loader& loader, const Node& node, const std::string& text);
 /// Adds a note about the element; the same text is said once, with the first place.
 void note(Loader& loader, const Node& node, const std::string& text);
+/// "unknown shape", say, or "has no type" where it has none.
+std::string unknown(const Node& node);
 /// For what Ajar lacks: an Error, or with --lenient a note that ends in what is done instead.
 void unsupported(Loader& loader, const Node& node, const std::string& text, const std::string& instead);
 

@@ -57,8 +57,10 @@ std::string snake_case(const std::string& name) {
 std::string read_text(const std::string& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) throw Error(fmt::format("{}: there is no such file", path));
+  if (status.type() == fs::file_type::not_found)
+    throw Error(fmt::format("{}: there is no such file; check the name", path));
   if (status.type() == fs::file_type::none) throw Error(fmt::format("{}: cannot be read: {}", path, error.message()));
+  if (fs::is_directory(status)) throw Error(fmt::format("{}: is a folder; name a file", path));
   if (!fs::is_regular_file(path, error)) throw Error(fmt::format("{}: is not a file", path));
   if (fs::file_size(path, error) > max_text) throw Error(fmt::format("{}: is larger than 1 GB", path));
   std::ifstream in(path, std::ios::binary);

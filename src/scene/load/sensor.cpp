@@ -213,7 +213,8 @@ void load_sensor(Loader& loader, const Node& node) {
                   : node.type == "thinlens"  ? CameraKind::thinlens
                                              : CameraKind::orthographic;
   } else {
-    unsupported(loader, node, "unknown sensor; supported: perspective, thinlens, orthographic", "read as perspective");
+    unsupported(loader, node, unknown(node) + "; supported: perspective, thinlens, orthographic",
+                "read as perspective");
   }
   camera.crop_width = camera.width;
   camera.crop_height = camera.height;

@@ -381,7 +381,7 @@ void load_shape(Loader& loader, const Node& node, uint32_t group) {
   const auto entry =
       std::find_if(std::begin(entries), std::end(entries), [&](const Entry& e) { return node.type == e.type; });
   if (entry == std::end(entries))
-    return unsupported(loader, node, fmt::format("unknown shape; {}", supported), "left out");
+    return unsupported(loader, node, fmt::format("{}; {}", unknown(node), supported), "left out");
   for (const Part& part : parts_of(p)) load_part(p, entry->read, part, group);
   note_strays(p, "texture", "a texture is no bsdf: not used; put it inside one, <bsdf type=\"diffuse\">");
   finish(p, {"id", "velocity", "collapse"});

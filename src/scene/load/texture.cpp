@@ -212,7 +212,7 @@ uint32_t add_texture(Loader& loader, const Node& node, Texture&& texture) {
 void check_texture(Loader& loader, const Node& node) {
   if (!is_texture(node) || std::find(std::begin(types), std::end(types), node.type) != std::end(types)) return;
   const std::string plain = node.tag == "spectrum" ? fmt::format("{}, ", fmt::join(constants, ", ")) : "";
-  unsupported(loader, node, fmt::format("unknown {}; supported: {}{}", node.tag, plain, fmt::join(types, ", ")),
+  unsupported(loader, node, fmt::format("{}; supported: {}{}", unknown(node), plain, fmt::join(types, ", ")),
               "grey 0.5 in its place");
 }
 

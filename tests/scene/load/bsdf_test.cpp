@@ -63,7 +63,7 @@ TEST(Bsdf, Conductor) {
   EXPECT_RGB(m.k, 7, 7, 7, 1e-5);
   EXPECT_RGB(last(bsdf("conductor", word("material", "Au_palik"))).k, 3.983, 2.386, 1.603, 1e-3);
   EXPECT_SAYS(error_of(bsdf("conductor", word("material", "Xx"))), "unknown material \"Xx\"; known are none, a-C, Ag");
-  EXPECT_TRUE(says(load_inside(bsdf("conductor", word("material", "Xx")), lenient()).notes, "copper in its place"));
+  EXPECT_TRUE(says(load_inside(bsdf("conductor", word("material", "Xx")), lenient()).notes, "none in its place"));
   EXPECT_SAYS(error_of(bsdf("conductor", texture("eta"))), "has to be one colour");
 }
 

@@ -53,7 +53,7 @@ TEST(Entities, WrongOnesAreErrors) {
   EXPECT_SAYS(wrong("<!ENTITY a '&b;'><!ENTITY b '&a;'>", "&a;"), "&a; contains itself");
   EXPECT_SAYS(wrong("<!ENTITY h SYSTEM 'nowhere.xml'>", "&h;"), "the entity &h; cannot be put in: ");
   EXPECT_SAYS(wrong("<!ENTITY h SYSTEM 'nowhere.xml'>", "&h;"), "nowhere.xml: there is no such file");
-  EXPECT_SAYS(wrong("<!ENTITY h SYSTEM '.'>", "&h;"), "is not a file");
+  EXPECT_SAYS(wrong("<!ENTITY h SYSTEM '.'>", "&h;"), "is a folder");
   EXPECT_EQ(wrong("<!ENTITY h SYSTEM 'nowhere.xml'>", ""), "");  // not used
 }
 

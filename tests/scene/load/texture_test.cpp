@@ -89,7 +89,7 @@ TEST(TextureFile, MissingOnesAreErrors) {
   EXPECT_SAYS(error(""), "needs <string name=\"filename\"");
   EXPECT_SAYS(error("<string name='filename' value='none.png'/>"),
               "test.xml:2: <string name=\"filename\">: there is no file \"none.png\"");
-  EXPECT_SAYS(error("<string name='filename' value='fragment.xml'/>"), "fragment.xml: cannot read the image");
+  EXPECT_SAYS(error("<string name='filename' value='fragment.xml'/>"), "fragment.xml: cannot be read as an image");
 }
 
 TEST(TextureKinds, Checkerboard) {

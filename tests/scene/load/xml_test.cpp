@@ -246,7 +246,10 @@ TEST(Xml, NoSceneIsAnError) {
   EXPECT_SAYS(error("<scene version='3.0.0'>\n<shape"), "a.xml:2: not well-formed XML");
   EXPECT_SAYS(error("<scene><sensor type='perspective'></scene>"), "not well-formed XML");
   EXPECT_SAYS(error("<html/>"), "outermost element should be <scene>");
-  EXPECT_SAYS(error("<scene version='3.0.0'/>"), "has no camera: add <sensor");
+  EXPECT_SAYS(error("<scene version='3.0.0'/>"), "has no camera and no shape: add <sensor");
+  EXPECT_SAYS(error("<scene version='3.0.0'><shape/></scene>"), "<shape>: has no type; supported: obj");
+  EXPECT_SAYS(error("<scene version='3.0.0'><emitter/></scene>"), "<emitter>: has no type; supported: ");
+  EXPECT_SAYS(error("<scene version='3.0.0'><bsdf/></scene>"), "<bsdf>: has no type");
   std::string deep = "<scene>";
   for (int i = 0; i < 100000; ++i) deep += "<bsdf>";
   EXPECT_NE(error(deep), "");
@@ -263,8 +266,8 @@ TEST(Xml, FilesThatAreNoneAreErrors) {
     }
     return {};
   };
-  EXPECT_SAYS(error("nowhere/nothing.xml"), "nowhere/nothing.xml: there is no such file");
-  EXPECT_SAYS(error(assets()), "is not a file");
+  EXPECT_SAYS(error("nowhere/nothing.xml"), "nowhere/nothing.xml: there is no such file; check the name");
+  EXPECT_SAYS(error(assets()), "is a folder; name a file");
   EXPECT_SAYS(error("/dev/null"), "is not a file");
   const std::filesystem::path loop = std::filesystem::path(testing::TempDir()) / "loop.xml";
   std::filesystem::remove(loop);
