@@ -74,6 +74,7 @@ std::vector<Case> quick() {
   for (Case& c : cases())
     if (c.refused || std::find(std::begin(names), std::end(names), c.name) != std::end(names)) {
       c.passes = std::max(c.passes / part, 1u);
+      if (!judged && c.answer > 0) c.answer = -1;
       c.make = halved(c.make), c.twin = halved(c.twin);
       chosen.push_back(std::move(c));
     }
