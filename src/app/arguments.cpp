@@ -101,27 +101,23 @@ std::string place_of(const std::string& path) {
 
 bool is_same_file(const std::string& a, const std::string& b) { return place_of(a) == place_of(b); }
 
-CLI::Validator whole(uint64_t least, uint64_t most) {
+namespace {
+template <class T>
+CLI::Validator within(T least, T most, const char* kind) {
   const auto check = [=](const std::string& text) -> std::string {
-    uint64_t n = 0;
-    const char* end = text.data() + text.size();
-    const auto [rest, failed] = std::from_chars(text.data(), end, n);
-    if (failed == std::errc() && rest == end && n >= least && n <= most) return {};
-    return fmt::format("{} is no whole number from {} to {}", text, least, most);
-  };
-  return CLI::Validator(check, most < 1 << 20 ? fmt::format("{} to {}", least, most) : fmt::format("from {}", least));
-}
-
-CLI::Validator number(double least, double most) {
-  const auto check = [=](const std::string& text) -> std::string {
-    double x = 0;
+    T x = 0;
     const char* end = text.data() + text.size();
     const auto [rest, failed] = std::from_chars(text.data(), end, x);
     if (failed == std::errc() && rest == end && x >= least && x <= most) return {};
-    return fmt::format("{} is no number from {} to {}", text, least, most);
+    return fmt::format("{} is no {} from {} to {}", text, kind, least, most);
   };
-  return CLI::Validator(check, fmt::format("{} to {}", least, most));
+  return CLI::Validator(check,
+                        most < T(1 << 20) ? fmt::format("{} to {}", least, most) : fmt::format("from {}", least));
 }
+}  // namespace
+
+CLI::Validator whole(uint64_t least, uint64_t most) { return within(least, most, "whole number"); }
+CLI::Validator number(double least, double most) { return within(least, most, "number"); }
 
 void add_threads(CLI::App& command, int& threads) {
   command.add_option("--threads", threads, "threads (default: all)")->check(whole(1, 4096));

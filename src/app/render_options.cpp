@@ -93,10 +93,13 @@ bool lists_parts(const RenderArguments& a) {
   return a.integrator.empty() && !a.plan.empty() && a.plan != "all" && a.plan != "auto";
 }
 
-// Fields are there to start from, and nobody names an integrator that could not.
+// Nobody names an integrator: the plan is to choose one, or fields that are there to start from do.
+bool names_none(const RenderArguments& a, const Scene& scene) {
+  return a.integrator.empty() && (a.plan == "auto" || (a.plan.empty() && scene.hints.integrator.empty()));
+}
+
 bool brings_fields(const RenderArguments& a, const Scene& scene) {
-  const bool chooses = a.plan == "auto" || (a.plan.empty() && scene.hints.integrator.empty());
-  return chooses && a.integrator.empty() && !a.load_fields.empty();
+  return names_none(a, scene) && !a.load_fields.empty();
 }
 
 // What the user names, else what the plan's parts make, else what the scene names.
@@ -207,20 +210,22 @@ bool leaves_out(const std::string& integrator) {
   return may_leave_out(o);
 }
 
+// Of --plan beside other options.
+void check_plan(const RenderArguments& a) {
+  const bool named = !a.integrator.empty();
+  if (named && !a.plan.empty() && a.plan != "none" && a.plan != "all")
+    throw Error("--plan: chooses the integrator; leave out either this or --integrator, or write --plan all");
+  if (named && a.plan == "all" && !leaves_out(a.integrator))
+    throw Error(fmt::format("--plan all: {} leaves nothing out; leave it out", a.integrator));
+  if (a.plan == "auto" && !a.resume.empty())
+    throw Error("--plan auto: a checkpoint goes on with the integrator that it began with; leave out --plan");
+}
+
 }  // namespace
 
 bool plans(const RenderArguments& a, const Scene& scene) {
-  if (a.plan.empty())
-    return a.integrator.empty() && scene.hints.integrator.empty() && a.resume.empty() && a.load_fields.empty();
-  if (!a.integrator.empty() && a.plan == "none") return false;
-  if (!a.integrator.empty() && a.plan != "all")
-    throw Error("--plan: chooses the integrator; leave out either this or --integrator, or write --plan all");
-  if (!a.integrator.empty() && !leaves_out(a.integrator))
-    throw Error(fmt::format("--plan all: {} leaves nothing out; leave it out", a.integrator));
-  if (a.plan != "auto") return false;
-  if (!a.resume.empty())
-    throw Error("--plan auto: a checkpoint goes on with the integrator that it began with; leave out --plan");
-  return a.load_fields.empty();
+  check_plan(a);
+  return names_none(a, scene) && a.resume.empty() && a.load_fields.empty();
 }
 
 std::string usual_light_choice(const std::string& integrator) { return is_guided(integrator) ? "learned" : "tree"; }

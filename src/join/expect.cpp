@@ -1,4 +1,4 @@
-// Half of a join's time goes here, so it is compiled to run in vectors: no NaN is asked for (CMakeLists.txt).
+// A large part of what joins cost, so it is compiled to run in vectors: no NaN is asked for (CMakeLists.txt).
 #include "expect.h"
 
 namespace ajar {

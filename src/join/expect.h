@@ -7,7 +7,7 @@
 
 namespace ajar {
 
-using Values = std::array<float, LightStore::width>;
+using Values = LightStore::Values;
 
 /// A camera vertex, as joins with many lights see it.
 struct Seer {

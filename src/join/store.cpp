@@ -97,9 +97,8 @@ void append(LightStore& store, const LightStore& more) {
 }
 
 namespace {
-// Of values, every eighth from one on makes a run: added side by side. Sums of runs up to and with each.
-constexpr uint32_t runs = LightStore::runs;
-using Sums = std::array<float, runs>;
+using Sums = LightStore::Sums;
+constexpr uint32_t runs = LightStore::runs;  // added side by side
 
 Sums sums_of(const Values& values) {
   Sums sums{};
@@ -107,6 +106,17 @@ Sums sums_of(const Values& values) {
     for (uint32_t i = 0; i < runs; ++i) sums[i] += values[k + i];
   for (uint32_t i = 1; i < runs; ++i) sums[i] += sums[i - 1];
   return sums;
+}
+
+void resize(Expectation& expected, size_t blocks) {
+  expected.values.resize(blocks), expected.sums.resize(blocks);
+  expected.sum = 0;
+}
+
+// The values of a block, once they are there.
+void add_up(Expectation& expected, size_t block) {
+  expected.sums[block] = sums_of(expected.values[block]);
+  expected.sum += expected.sums[block].back();
 }
 
 // Which value a place within the sum of all is in.
@@ -129,8 +139,7 @@ float joins_for(const Joiner& joiner, float brings) {
 
 // Of so many blocks from one on, and around.
 void expect_some(const LightStore& store, const Joiner& joiner, uint32_t from, uint32_t count, Expectation& out) {
-  out.values.resize(count), out.sums.resize(count);
-  out.sum = 0;
+  resize(out, count);
   const Seer seer = seer_of(joiner);
   const Guide& guide = joiner.vertex->guide;
   const uint32_t region = region_of(guide);
@@ -138,8 +147,7 @@ void expect_some(const LightStore& store, const Joiner& joiner, uint32_t from, u
     const LightStore::Block& b = store.blocks[(from + j) % store.blocks.size()];
     expect(b, seer, joiner.most, out.values[j]);
     if (guide.fields) apply_chances(b, guide.fields->views, region, out.values[j]);
-    out.sums[j] = sums_of(out.values[j]);
-    out.sum += out.sums[j].back();
+    add_up(out, j);
   }
 }
 }  // namespace
@@ -174,8 +182,7 @@ void choose(const LightStore& store, const Joiner& joiner, Sampler& sampler, Exp
 }
 
 void expect_all(const LightStore& store, const Vertex& camera, int most, const Prospect& known, Expectation& out) {
-  out.values.resize(store.blocks.size());
-  out.sum = 0;
+  resize(out, store.blocks.size());
   const Seer seer = seer_of(camera);
   for (size_t block = 0; block < store.blocks.size(); ++block) {
     Values& values = out.values[block];
@@ -183,9 +190,7 @@ void expect_all(const LightStore& store, const Vertex& camera, int most, const P
     if (known.views) apply_chances(store.blocks[block], *known.views, known.region, values);
     if (known.tile)
       for (uint32_t i = 0; i < LightStore::width; ++i) values[i] *= known.tile->blocks[block].chance[i];
-    std::array<float, 8> part{};
-    for (uint32_t i = 0; i < LightStore::width; ++i) part[i % 8] += values[i];
-    out.sum += ((part[0] + part[1]) + (part[2] + part[3])) + ((part[4] + part[5]) + (part[6] + part[7]));
+    add_up(out, block);
   }
 }
 

@@ -25,6 +25,8 @@ struct LightStore {
   };
   /// What a choice reads of so many places, side by side. A block is an even sample of all places.
   static constexpr uint32_t width = 32, runs = 8;
+  using Values = std::array<float, width>;  ///< of the places of a block; every eighth from one on makes a run
+  using Sums = std::array<float, runs>;     ///< of the runs up to and with each
   struct alignas(64) Block {
     float x[width] = {}, y[width] = {}, z[width] = {};
     float nx[width] = {}, ny[width] = {}, nz[width] = {};  ///< shading normal on the side that it is lit from
@@ -75,8 +77,8 @@ void finish(LightStore& store, std::span<const float> near);
 void append(LightStore& store, const LightStore& more);
 /// What places of a store would bring to one camera vertex.
 struct Expectation {
-  std::vector<std::array<float, LightStore::width>> values;  ///< per block
-  std::vector<std::array<float, LightStore::runs>> sums;     ///< of them, as choose reads them
+  std::vector<LightStore::Values> values;  ///< per block
+  std::vector<LightStore::Sums> sums;      ///< of them
   float sum = 0;
 };
 /// Draws from the places of some blocks in proportion to what they would bring unoccluded times the chance that they
