@@ -75,9 +75,13 @@ bool join_light(const Scene& scene, const Fields* fields, Sampler& sampler, cons
   return true;
 }
 
-bool join_vertices(std::span<const Vertex> light, double share, std::span<const Vertex> camera, double light_paths,
-                   Candidate& out) {
-  const Vertex& a = light.back();
+LightEnd light_end(std::span<const Vertex> light, double share) {
+  const Vertex& before = light[light.size() - 2];
+  return {&light.back(), int(light.size()), before.delta, before.own, share};
+}
+
+bool join_vertices(const LightEnd& light, std::span<const Vertex> camera, double light_paths, Candidate& out) {
+  const Vertex& a = *light.vertex;
   const Vertex& c = camera.back();
   const Vec3 between = c.p - a.p;
   if (!may_scatter(c.guide, -between) || !may_scatter(a.guide, between)) return false;
@@ -90,11 +94,11 @@ bool join_vertices(std::span<const Vertex> light, double share, std::span<const 
   const GuideEval ea = evaluate_bsdf(a.guide, w, Mode::importance);
   out.value = a.beta * ea.f_cos * ec.f_cos * c.beta / d2;
   if (is_black(out.value)) return false;
-  out.light = end_at(light, 0, ea.pdf_reverse);
+  out.light = {light.s, a.own, 0, light.own_before, ea.pdf_reverse * a.back, light.delta_before, a.sum, a.merge};
   out.light_found = {&c.guide, -w, ec.pdf, std::abs(glm::dot(a.ng, w)), d2};
   out.camera = end_at(camera, 0, ec.pdf_reverse);
   out.camera_found = {&a.guide, w, ea.pdf, std::abs(glm::dot(c.ng, w)), d2};
-  out.shares = {share, light_paths};
+  out.shares = {light.share, light_paths};
   const Vec3 from = offset(c.p, c.ng, c.error, -w);
   out.segment = {from, shadow_end(a.p, a.ng, a.error, w, distance) - from};
   return true;

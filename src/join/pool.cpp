@@ -33,24 +33,39 @@ double value_of(const LightStore::Place& at, const Totals& all) {
   return value * double(at.counts);
 }
 
-// Copies a place, and of its subpath what is not there yet: places of a subpath follow each other.
-class Copier {
- public:
-  Copier(LightStore& out, const LightStore& from) : out_(out), from_(from) {}
-  void copy(LightStore::Place at, uint32_t paths_before) {
-    if (at.first != first_) first_ = at.first, copied_ = 0, start_ = uint32_t(out_.vertices.size());
-    const auto begin = from_.vertices.begin() + ptrdiff_t(first_);
-    if (at.s > copied_) out_.vertices.insert(out_.vertices.end(), begin + copied_, begin + at.s), copied_ = at.s;
-    at.first = start_, at.path += paths_before;
-    out_.places.push_back(at);
-  }
-
- private:
-  LightStore& out_;
-  const LightStore& from_;
-  uint32_t first_ = ~0u, start_ = 0;
-  int copied_ = 0;
+struct Choice {
+  uint64_t order = 0;
+  double value = 0;
+  const LightStore* store = nullptr;
+  LightStore::Place at;  // its path counted through all stores
 };
+
+std::vector<Choice> choices_of(const std::vector<const LightStore*>& stores, const Totals& all) {
+  std::vector<Choice> out;
+  uint32_t paths = 0;
+  Vec3 low(infinity), high(-infinity);
+  for (const LightStore* store : stores) {
+    for (LightStore::Place at : store->places) {
+      const Vec3 p = store->vertex(at).p;
+      low = glm::min(low, p), high = glm::max(high, p);
+      out.push_back({0, value_of(at, all), store, at});
+      out.back().at.path += paths;
+    }
+    paths += store->paths;
+  }
+  const Vec3 size = high - low;
+  const float radius = std::max({size.x, size.y, size.z, 1e-30f}) / 2;
+  for (Choice& c : out) c.order = place_in_order(c.store->vertex(c.at), (low + high) / 2.0f, radius);
+  std::stable_sort(out.begin(), out.end(), [](const Choice& a, const Choice& b) { return a.order < b.order; });
+  return out;
+}
+
+uint64_t spread_bits(uint64_t x) {
+  x = (x | x << 16) & 0x030000ff;
+  x = (x | x << 8) & 0x0300f00f;
+  x = (x | x << 4) & 0x030c30c3;
+  return (x | x << 2) & 0x09249249;
+}
 
 }  // namespace
 
@@ -64,25 +79,30 @@ double find_threshold(std::vector<double> values, double count) {
   return count > 0 ? sum / count : 0;
 }
 
+uint64_t place_in_order(const Vertex& v, const Vec3& center, float radius) {
+  const Vec3 q = glm::clamp((v.p - center) / (2 * radius) + 0.5f, 0.0f, 1.0f) * 1023.0f;
+  const Vec3 n = v.guide.frame.n, a = glm::abs(n);
+  const int axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
+  const uint64_t range = 2 * uint64_t(axis) + (n[axis] > 0);
+  return range << 32 | spread_bits(uint64_t(q.x)) << 2 | spread_bits(uint64_t(q.y)) << 1 | spread_bits(uint64_t(q.z));
+}
+
 void keep(LightStore& out, const std::vector<const LightStore*>& stores, double count, float u) {
   clear(out);
-  const Totals all = totals_of(stores);
+  for (const LightStore* store : stores) out.paths += store->paths;
+  const std::vector<Choice> choices = choices_of(stores, totals_of(stores));
   std::vector<double> values;
-  for (const LightStore* store : stores)
-    for (const LightStore::Place& at : store->places) values.push_back(value_of(at, all));
-  const double least = find_threshold(values, count);
+  for (const Choice& c : choices) values.push_back(c.value);
+  const double least = find_threshold(std::move(values), count);
   double sum = 0;
-  size_t i = 0;
-  for (const LightStore* store : stores) {
-    Copier copier(out, *store);
-    for (LightStore::Place at : store->places) {
-      const double chance = least > 0 ? std::min(values[i++] / least, 1.0) : 1;
-      sum += chance;
-      if (!(double(out.places.size()) + double(u) < sum)) continue;
-      at.counts /= float(chance);
-      copier.copy(at, out.paths);
-    }
-    out.paths += store->paths;
+  for (const Choice& c : choices) {
+    const double chance = least > 0 ? std::min(c.value / least, 1.0) : 1;
+    sum += chance;
+    if (!(double(out.places.size()) + double(u) < sum)) continue;
+    out.vertices.push_back(c.store->vertex(c.at));
+    out.places.push_back(c.at);
+    out.places.back().vertex = uint32_t(out.vertices.size() - 1);
+    out.places.back().counts /= float(chance);
   }
 }
 

@@ -1,5 +1,6 @@
 #include "ajar/join/store.h"
 
+#include <algorithm>
 #include <array>
 
 #include "ajar/join/visibility.h"
@@ -31,6 +32,14 @@ void put(LightStore::Block& b, uint32_t i, const Vertex& v, const LightStore::Pl
   b.matt[i] = gloss.matt, b.peak[i] = gloss.peak, b.f0[i] = gloss.f0, b.alpha[i] = gloss.alpha;
 }
 
+// Whether no walk finds what a light subpath brings its last vertex: a caustic of a light without extent.
+bool only_joined(std::span<const Vertex> light) {
+  const auto end = light.end() - 1;
+  const LightPoint& point = light[0].point;
+  return light.size() > 2 && (point.delta_position || point.delta_direction) &&
+         std::all_of(light.begin() + 1, end, [](const Vertex& v) { return v.delta; });
+}
+
 Seer seer_of(const Vertex& v, float near = 0, float near_lights = 1) {
   return {&v, gloss_of(v.guide.bsdf, v.guide.wo_local), near, near_lights};
 }
@@ -46,18 +55,24 @@ void clear(LightStore& store) { store.vertices.clear(), store.places.clear(), st
 
 void add(LightStore& store, const Subpath& light, double share) {
   ++store.paths;
-  const uint32_t first = uint32_t(store.vertices.size());
-  int last = 0;
   for (int s = 2; s <= light.n; ++s) {
     const Vertex& v = light[s - 1];
     if (!connectable(v.guide)) continue;
     const float flux = flux_of(v);
     if (!(flux > 0)) continue;
-    const float worth = promise(v.guide, v.beta).beyond;
-    store.places.push_back({first, s, region_of(v.guide), share, store.paths - 1, 1, flux, worth});
-    last = s;
+    const LightEnd end = light_end(light.first(s), share);
+    store.places.push_back({.vertex = uint32_t(store.vertices.size()),
+                            .s = s,
+                            .delta_before = end.delta_before,
+                            .only_joined = only_joined(light.first(s)),
+                            .own_before = end.own_before,
+                            .share = share,
+                            .region = region_of(v.guide),
+                            .path = store.paths - 1,
+                            .flux = flux,
+                            .worth = promise(v.guide, v.beta).beyond});
+    store.vertices.push_back(v);
   }
-  store.vertices.insert(store.vertices.end(), light.vertices.begin(), light.vertices.begin() + last);
 }
 
 namespace {
@@ -69,16 +84,16 @@ void make_blocks(LightStore& store, const Near& near, bool in_order) {
   for (uint32_t i = 0; i < all; ++i) {
     const LightStore::Place& at = store.places[i];
     if (in_order)
-      put(store.blocks[i / LightStore::width], i % LightStore::width, store.subpath(at).back(), at, near(i));
+      put(store.blocks[i / LightStore::width], i % LightStore::width, store.vertex(at), at, near(i));
     else
-      put(store.blocks[i % n], i / n, store.subpath(at).back(), at, near(i));
+      put(store.blocks[i % n], i / n, store.vertex(at), at, near(i));
   }
 }
 }  // namespace
 
 void finish(LightStore& store) {
   make_blocks(
-      store, [&](uint32_t i) { return float(near_of(store.subpath(store.places[i]).back())); }, false);
+      store, [&](uint32_t i) { return float(near_of(store.vertex(store.places[i]))); }, false);
 }
 
 void finish(LightStore& store, std::span<const float> near) {
@@ -90,7 +105,7 @@ void append(LightStore& store, const LightStore& more) {
   const uint32_t shift = uint32_t(store.vertices.size());
   store.vertices.insert(store.vertices.end(), more.vertices.begin(), more.vertices.end());
   for (LightStore::Place at : more.places) {
-    at.first += shift, at.path += store.paths;
+    at.vertex += shift, at.path += store.paths;
     store.places.push_back(at);
   }
   store.paths += more.paths;

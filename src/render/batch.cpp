@@ -15,26 +15,23 @@ Scratch& prepare(const Job& job, Batch& batch, uint32_t i, Scratch& scratch) {
   scratch.ledger = &batch.ledgers[i];
   scratch.strategies = job.techniques ? &batch.strategies[i] : nullptr;
   scratch.halves = batch.halves.empty() ? &scratch.own_halves : &batch.halves[i];
-  scratch.pool = batch.pools.empty() ? nullptr : &batch.pools[batch.pool_of[i]];
   return scratch;
 }
 
-// Light vertices of a pool, about: no more than fill blocks that are all looked at. And how many chunks make one: what
-// few lights shine on is streaked in the same way in all chunks that share them, so neighbours rarely do.
+// Light vertices of a pool, about: no more than fill blocks that are all looked at. And how many chunks make one: the
+// fewer, the less do pixels err together, but the more memory do they jump about in. (J12)
 constexpr double pooled_lights = 1000;
-constexpr uint32_t chunks_per_pool = 32;
+constexpr uint32_t chunks_per_pool = 16;
 
-// Which pool a chunk gives its light vertices to, and takes others from.
-void assign_pools(const Job& job, const Film& film, uint32_t from, Batch& batch) {
-  const uint32_t count = uint32_t(batch.halves.size()), pools = std::max(count / chunks_per_pool, 1u);
-  batch.pools.resize(pools), batch.pool_of.resize(count);
-  for (uint32_t i = 0; i < count; ++i)
-    batch.pool_of[i] = uint32_t(hash(hash(job.seed, 0x3f0d), hash(film.dropped + film.passes, from + i)) % pools);
+// Chunks of which a thread traces one pool's samples after another's, so that what it reads of a pool is near; as few
+// as keep all threads at work.
+uint32_t chunks_of_a_group(uint32_t count, size_t threads) {
+  return std::clamp(count / (4 * uint32_t(threads)), 1u, 4u);
 }
 
 void fill_pools(const Job& job, const Film& film, uint32_t from, Batch& batch) {
   std::vector<std::vector<const LightStore*>> stores(batch.pools.size());
-  for (size_t i = 0; i < batch.halves.size(); ++i) stores[batch.pool_of[i]].push_back(&batch.halves[i].store);
+  for (size_t i = 0; i < batch.halves.size(); ++i) stores[i % stores.size()].push_back(&batch.halves[i].store);
   parallel_for(uint32_t(stores.size()), [&](uint32_t k) {
     keep(batch.pools[k], stores[k], pooled_lights, number_of(job, film, ~(from + k)));
     finish(batch.pools[k]);
@@ -63,7 +60,7 @@ void trace_in_halves(Job& job, Film& film, uint32_t from, Batch& batch, std::vec
   const uint32_t count = uint32_t(batch.splats.size());
   const auto at_work = [&](uint32_t i) -> Scratch& { return prepare(job, batch, i, scratches[thread_slot()]); };
   batch.halves.resize(count);
-  assign_pools(job, film, from, batch);
+  batch.pools.resize(std::max(count / chunks_per_pool, 1u));
   job.kept = 2 * pooled_lights * double(batch.pools.size()) / count;
   parallel_for(count, [&](uint32_t i) {
     Scratch& scratch = at_work(i);
@@ -72,11 +69,17 @@ void trace_in_halves(Job& job, Film& film, uint32_t from, Batch& batch, std::vec
   });
   fill_pools(job, film, from, batch);
   gather_photons(job, batch);
-  parallel_for(count, [&](uint32_t i) {
+  const auto trace_part = [&](uint32_t i, uint32_t pool) {
     Scratch& scratch = at_work(i);
     scratch.rejected_at = batch.rejected_at[i];
-    trace_camera_halves(job, film, scratch);
+    scratch.pool = &batch.pools[pool];
+    trace_camera_halves(job, film, {pool, uint32_t(batch.pools.size())}, scratch);
     batch.rejected_at[i] = scratch.rejected_at;
+  };
+  const uint32_t group = chunks_of_a_group(count, scratches.size());
+  parallel_for((count + group - 1) / group, [&](uint32_t g) {
+    for (uint32_t pool = 0; pool < batch.pools.size(); ++pool)
+      for (uint32_t i = g * group; i < std::min((g + 1) * group, count); ++i) trace_part(i, pool);
   });
 }
 
@@ -84,7 +87,8 @@ void trace_whole(const Job& job, Film& film, uint32_t from, Batch& batch, std::v
   parallel_for(uint32_t(batch.splats.size()), [&](uint32_t i) {
     Scratch& scratch = prepare(job, batch, i, scratches[thread_slot()]);
     trace_light_halves(job, film, from + i, scratch);
-    trace_camera_halves(job, film, scratch);
+    scratch.pool = nullptr;
+    trace_camera_halves(job, film, {}, scratch);
     batch.rejected_at[i] = scratch.rejected_at;
   });
 }

@@ -13,8 +13,7 @@ struct Batch {
   std::vector<Ledger> ledgers;
   std::vector<uint64_t> rejected_at;  ///< path of each chunk's first rejected value
   std::vector<Halves> halves;         ///< only where light subpaths of the whole batch are joined or merged
-  std::vector<LightStore> pools;      ///< likewise; a chunk's camera halves read one of them
-  std::vector<uint32_t> pool_of;      ///< chunk by chunk
+  std::vector<LightStore> pools;      ///< likewise; a sample's camera half reads one of them
   PhotonMap photons[2];
 };
 

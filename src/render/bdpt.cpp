@@ -213,11 +213,11 @@ Joiner joiner_of(const Job& job, const Subpath& camera, float worth) {
   return j;
 }
 
-// Vertices that were chosen lie all over the pool: memory is asked for them at once.
+// Vertices that were chosen lie all over the pool: memory is asked for them at once, up to the first lobe.
 void ask_for(const LightStore& store, const std::vector<StoreChoice>& choices) {
   for (const StoreChoice& choice : choices) {
-    const char* const at = reinterpret_cast<const char*>(&store.subpath(*choice.place).back());
-    for (size_t i = 0; i < sizeof(Vertex); i += 64) __builtin_prefetch(at + i);
+    const char* const at = reinterpret_cast<const char*>(&store.vertex(*choice.place));
+    for (size_t i = 0; i < offsetof(Vertex, guide.bsdf.lobes[1]); i += 64) __builtin_prefetch(at + i);
   }
 }
 
@@ -233,7 +233,7 @@ void join_stored(Work& work, float worth) {
   for (const StoreChoice& choice : choices) {
     const LightStore::Place& at = *choice.place;
     Candidate c;
-    if (join_vertices(store.subpath(at), at.share, camera.first(camera.n), job.walk.light_paths, c)) {
+    if (join_vertices(store.end(at), camera.first(camera.n), job.walk.light_paths, c)) {
       c.value *= choice.weight;
       const bool seen = add_if_visible(work, c, at.s, camera.n);
       if (work.sample.teaches)
@@ -291,7 +291,7 @@ void join_all(Work& work) {
   Candidate c;
   for (int s = 2; s <= most; ++s)
     if (connectable(light[s - 1].guide)) {
-      if (join_vertices(light.first(s), work.light_share, camera.first(t), job.walk.light_paths, c))
+      if (join_vertices(light_end(light.first(s), work.light_share), camera.first(t), job.walk.light_paths, c))
         add_if_visible(work, c, s, t);
       charge_join(work.scratch, s, t);
     }

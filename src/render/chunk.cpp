@@ -60,6 +60,12 @@ Rgb trace_pixel(const Job& job, Sample& sample, bool splat, Scratch& scratch) {
   return sample.value * sample.filter;
 }
 
+// Which pool a sample joins: neighbours others, and others from pass to pass, so that what a pool has too much of is
+// grain rather than blotches. (J12)
+uint32_t pool_of(const Job& job, const Sample& sample, uint32_t pools) {
+  return uint32_t(hash(hash(job.seed, 0x3f0d), hash(sample.pass, sample.path)) % pools);
+}
+
 }  // namespace
 
 float number_of(const Job& job, const Film& film, uint32_t chunk) {
@@ -99,10 +105,11 @@ void trace_light_halves(const Job& job, Film& film, uint32_t chunk, Scratch& scr
   keep(halves.store, {&scratch.traced}, job.kept, number_of(job, film, chunk));
 }
 
-void trace_camera_halves(const Job& job, Film& film, Scratch& scratch) {
+void trace_camera_halves(const Job& job, Film& film, OfPool of, Scratch& scratch) {
   if (job.vpls && !job.guided) start(job.vpls->store, scratch.visibility);
   for (auto& [sample, splat] : scratch.halves->samples)
-    film.camera[sample.path] = trace_pixel(job, sample, splat, scratch);
+    if (of.pools == 1 || pool_of(job, sample, of.pools) == of.pool)
+      film.camera[sample.path] = trace_pixel(job, sample, splat, scratch);
 }
 
 Rgb trace_alone(const Job& job, const Film& film, uint32_t pixel, Scratch& scratch) {

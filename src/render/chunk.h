@@ -14,8 +14,12 @@ uint32_t share_of(const Job& job, const Film& film);
 double light_halves(size_t samples, float rate);
 /// The samples of a chunk and, where light subpaths are stored, their light halves.
 void trace_light_halves(const Job& job, Film& film, uint32_t chunk, Scratch& scratch);
-/// What the samples of the scratch's halves see.
-void trace_camera_halves(const Job& job, Film& film, Scratch& scratch);
+/// Those samples of a chunk that join the light vertices of one pool.
+struct OfPool {
+  uint32_t pool = 0, pools = 1;  ///< which, of how many
+};
+/// What the samples of the scratch's halves see, all or those of a pool.
+void trace_camera_halves(const Job& job, Film& film, OfPool of, Scratch& scratch);
 /// What a camera sample of a pixel brings in the film's pass at hand, filtered, of a job without light subpaths; the
 /// film stays as it is.
 Rgb trace_alone(const Job& job, const Film& film, uint32_t pixel, Scratch& scratch);

@@ -103,7 +103,7 @@ struct alignas(64) Scratch {
   Visibility visibility;             ///< of lights, from what the lens sees of a chunk, in this pass
   std::vector<NearPhoton> near;      ///< to the vertex at hand
   Halves* halves = nullptr;          ///< of the chunk
-  const LightStore* pool = nullptr;  ///< light vertices to join, of many chunks' light subpaths; null: one's own
+  const LightStore* pool = nullptr;  ///< light vertices to join, of many subpaths; null: those of one's own
   Halves own_halves;                 ///< where those of one chunk are enough
   Counters counters;
   Sightings sightings;
@@ -125,8 +125,6 @@ void trace_vpl(const Job&, Sample&, Scratch&);
 Vpls make_vpls(const Scene&, const Film&, bool guided);
 /// Whether a vertex may be a light: what it scatters is not so narrow that hardly any pixel ever sees it.
 bool can_light(const Guide& y);
-/// Whether no walk finds what a light subpath brings its last vertex: a caustic of a light without extent.
-bool only_joined(std::span<const Vertex> light);
 /// Lights per area at a point of a surface, on the side of direction w: of all that are kept, as far as fields know. A
 /// function of the place, whatever the pass's lights are.
 double density_of_lights(const Job& job, const Vec3& p, const Vec3& ng, const Vec3& w);

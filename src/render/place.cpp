@@ -83,10 +83,8 @@ std::vector<Part> trace_parts(const Job& job, uint64_t stream, uint32_t pass, st
     for (uint32_t i = from; i < to; ++i)
       trace_lights(job, numbers_of(job, stream, pass, i), scratches[thread_slot()], parts[part]);
     const LightStore& store = parts[part].store;
-    std::erase_if(parts[part].store.places, [&](const LightStore::Place& at) {
-      const std::span<const Vertex> subpath = store.subpath(at);
-      return !can_light(subpath.back().guide) && !only_joined(subpath);
-    });
+    std::erase_if(parts[part].store.places,
+                  [&](const LightStore::Place& at) { return !can_light(store.vertex(at).guide) && !at.only_joined; });
   });
   return parts;
 }
@@ -109,7 +107,7 @@ void select_lights(const Job& job, uint32_t pass, uint32_t number, LightStore& s
   const uint64_t key = hash(hash(job.seed, 0x6b657074), hash(pass, number));
   std::vector<LightStore::Place> kept;
   for (LightStore::Place& at : store.places) {
-    const Worth worth = worth_of(store.subpath(at).back());
+    const Worth worth = worth_of(store.vertex(at));
     const double chance = std::min((worth.image + v.per_flux * worth.flux) / v.least, 1.0);  // (I2)
     if (!(double(hash(key, uint64_t(at.path) << 32 | uint32_t(at.s)) >> 11) * 0x1p-53 < chance)) continue;
     at.counts = float(1 / chance);
@@ -118,27 +116,10 @@ void select_lights(const Job& job, uint32_t pass, uint32_t number, LightStore& s
   store.places = std::move(kept);
 }
 
-uint64_t spread_bits(uint64_t x) {
-  x = (x | x << 16) & 0x030000ff;
-  x = (x | x << 8) & 0x0300f00f;
-  x = (x | x << 4) & 0x030c30c3;
-  return (x | x << 2) & 0x09249249;
-}
-
-// Along a Morton curve over places, one for each of six ranges of normals, so that lights that are near each other in
-// the order are alike.
-uint64_t place_in_order(const Scene& scene, const Vertex& v) {
-  const Vec3 q = glm::clamp((v.p - scene.center) / (2 * scene.radius) + 0.5f, 0.0f, 1.0f) * 1023.0f;
-  const Vec3 n = v.guide.frame.n, a = glm::abs(n);
-  const int axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
-  const uint64_t range = 2 * uint64_t(axis) + (n[axis] > 0);
-  return range << 32 | spread_bits(uint64_t(q.x)) << 2 | spread_bits(uint64_t(q.y)) << 1 | spread_bits(uint64_t(q.z));
-}
-
 void put_in_order(const Scene& scene, LightStore& store) {
   std::vector<std::pair<uint64_t, LightStore::Place>> keyed;
   for (const LightStore::Place& at : store.places)
-    keyed.emplace_back(place_in_order(scene, store.subpath(at).back()), at);
+    keyed.emplace_back(place_in_order(store.vertex(at), scene.center, scene.radius), at);
   std::stable_sort(keyed.begin(), keyed.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   for (size_t i = 0; i < keyed.size(); ++i) store.places[i] = keyed[i].second;
 }
@@ -163,13 +144,6 @@ bool can_light(const Guide& y) {
   return least_roughness(y.bsdf) >= least_alpha;
 }
 
-bool only_joined(std::span<const Vertex> light) {
-  const size_t end = light.size() - 1;
-  const LightPoint& point = light[0].point;
-  return end > 1 && (point.delta_position || point.delta_direction) &&
-         std::all_of(light.begin() + 1, light.begin() + ptrdiff_t(end), [](const Vertex& v) { return v.delta; });
-}
-
 double density_of_lights(const Job& job, const Vec3& p, const Vec3& ng, const Vec3& w) {
   const Fields* fields = job.walk.fields;
   const Vpls& v = *job.vpls;
@@ -191,7 +165,7 @@ void measure_lights(const Job& job, std::vector<Scratch>& scratches, Vpls& vpls)
   Worth all;
   for (const Part& part : trace_parts(job, stream, 0, scratches))
     for (const LightStore::Place& at : part.store.places) {
-      found.push_back(worth_of(part.store.subpath(at).back()));
+      found.push_back(worth_of(part.store.vertex(at)));
       all.image += found.back().image, all.flux += found.back().flux;
     }
   vpls.per_flux = all.flux > 0 ? by_flux * all.image / all.flux : 0;
@@ -214,7 +188,7 @@ void place_vpls(const Job& job, uint32_t pass, std::vector<Scratch>& scratches, 
   put_in_order(*job.scene, vpls.store);
   std::vector<float> near;
   for (const LightStore::Place& at : vpls.store.places) {
-    const Vertex& v = vpls.store.subpath(at).back();
+    const Vertex& v = vpls.store.vertex(at);
     near.push_back(float(inv_pi / std::max(density_of_lights(job, v.p, v.ng, v.guide.wo), 1e-30)));
   }
   finish(vpls.store, near);

@@ -61,9 +61,9 @@ double share_of_joins(const Job& job, const Vec3& y, const Vec3& ng, const Vec3&
   return lights > 0 ? lights / (lights + walked) : 0;  // (I1)
 }
 
-double share_at(const Job& job, std::span<const Vertex> light, const Vec3& x, double walked) {
-  const Vertex& y = light.back();
-  return only_joined(light) ? 1 : share_of_joins(job, y.p, y.ng, x - y.p, walked);
+double share_at(const Job& job, const LightStore::Place& at, const Vec3& x, double walked) {
+  const Vertex& y = job.vpls->store.vertex(at);
+  return at.only_joined ? 1 : share_of_joins(job, y.p, y.ng, x - y.p, walked);
 }
 
 // Whether the walk is to find what its last vertex y scatters, which joins at the one before could have found as well.
@@ -135,11 +135,10 @@ void join_vpls(Work& work) {
   for (const StoreChoice& choice : scratch.choices) {
     const LightStore::Place& at = *choice.place;
     Candidate c;
-    const bool seen =
-        join_vertices(store.subpath(at), at.share, camera.first(camera.n), 0, c) && is_free(work, c, at.s, camera.n);
+    const bool seen = join_vertices(store.end(at), camera.first(camera.n), 0, c) && is_free(work, c, at.s, camera.n);
     if (visibility) learn(*visibility, uint32_t(&at - store.places.data()), seen);
     if (seen) {
-      const double share = share_at(job, store.subpath(at), camera[camera.n - 1].p, c.light.other);
+      const double share = share_at(job, at, camera[camera.n - 1].p, c.light.other);
       c.value *= choice.weight;
       add(work, c, float(share) * share_of_camera(work, c), at.s, camera.n);
     }

@@ -95,7 +95,7 @@ inline std::vector<double> brought(const LightStore& store, const Subpath& camer
   std::vector<double> out;
   for (const LightStore::Place& at : store.places) {
     Candidate c;
-    const bool joined = at.s <= most && join_vertices(store.subpath(at), at.share, camera.first(camera.n), 64, c);
+    const bool joined = at.s <= most && join_vertices(store.end(at), camera.first(camera.n), 64, c);
     out.push_back(joined ? double(luminance(c.value)) * (0.5 + double(hash(out.size(), 3) % 1000) / 1000) : 0);
   }
   return out;

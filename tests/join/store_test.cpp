@@ -68,9 +68,9 @@ TEST(LightStore, PartsAddUpToTheWhole) {
   EXPECT_EQ(joined.paths, 2 * whole.paths);
   ASSERT_EQ(joined.places.size(), 2 * whole.places.size());
   for (size_t i = 0; i < whole.places.size(); ++i) {
-    const auto a = whole.subpath(whole.places[i]), b = joined.subpath(joined.places[whole.places.size() + i]);
-    EXPECT_EQ(a.back().p, b.back().p);
-    EXPECT_EQ(a.front().p, b.front().p);
+    const LightStore::Place &a = whole.places[i], &b = joined.places[whole.places.size() + i];
+    EXPECT_EQ(whole.vertex(a).p, joined.vertex(b).p);
+    EXPECT_EQ(a.own_before, b.own_before);
   }
 }
 
@@ -169,7 +169,7 @@ std::vector<double> probabilities(const LightStore& store, const Room& room, con
   const double lights = joiner.onwards / joiner.counts, before = joiner.before / joiner.counts;
   std::vector<double> p, sums(n);
   for (size_t i = 0; i < store.places.size(); ++i) {
-    const Vertex& a = store.subpath(store.places[i]).back();
+    const Vertex& a = store.vertex(store.places[i]);
     const glm::dvec3 w = glm::dvec3(c.p) - glm::dvec3(a.p);
     const double d2 = glm::dot(w, w), cosines = std::max(glm::dot(glm::dvec3(a.guide.frame.n), w), 0.0) *
                                                 std::max(-glm::dot(glm::dvec3(c.guide.frame.n), w), 0.0) / d2;
@@ -256,13 +256,13 @@ TEST(LightStore, NothingBehindIsChosen) {
   int chosen = 0, behind = 0;
   for (const Subpath& camera : room.cameras(20)) {
     const Vertex& c = end_of(camera);
-    for (const LightStore::Place& at : store.places) behind += !may_scatter(c.guide, store.subpath(at).back().p - c.p);
+    for (const LightStore::Place& at : store.places) behind += !may_scatter(c.guide, store.vertex(at).p - c.p);
     Sampler sampler = draws(2);
     std::vector<StoreChoice> choices;
     for (int i = 0; i < 1000; ++i) {
       draw(store, {&c, most_edges}, sampler, choices);
       for (const StoreChoice& choice : choices) {
-        const Vertex& a = store.subpath(*choice.place).back();
+        const Vertex& a = store.vertex(*choice.place);
         ASSERT_TRUE(may_scatter(c.guide, a.p - c.p));
         ASSERT_TRUE(may_scatter(a.guide, c.p - a.p));
         ++chosen;
@@ -289,9 +289,9 @@ TEST(LightStore, JoinsAsTheSubpathItself) {
     while (light.n < most_edges && step(room.scene, room.accel, room.options, light, walk, surface) &&
            scatter(room.options, sampler, light, walk)) {
     }
-    const auto weigh = [&](std::span<const Vertex> subpath, double share) {
+    const auto weigh = [&](const LightEnd& end) {
       Candidate c;
-      return join_vertices(subpath, share, camera.first(camera.n), 64, c) ? weight(Heuristic::power, c) : -1;
+      return join_vertices(end, camera.first(camera.n), 64, c) ? weight(Heuristic::power, c) : -1;
     };
     const size_t before = store.places.size();
     add(store, light, walk.first_share);
@@ -302,7 +302,7 @@ TEST(LightStore, JoinsAsTheSubpathItself) {
       const LightStore::Place& at = store.places[place++];
       EXPECT_EQ(at.s, s);
       counts += std::abs(at.share - 1) > 0.1;
-      EXPECT_EQ(weigh(store.subpath(at), at.share), weigh(light.first(s), walk.first_share));
+      EXPECT_EQ(weigh(store.end(at)), weigh(light_end(light.first(s), walk.first_share)));
     }
     EXPECT_EQ(place, store.places.size());
   }

@@ -191,7 +191,8 @@ void compare_all(const Tracer& tracer, Traced& light, Traced& camera, const Vec2
       tally.compare(scene, c, lit(d.point, d.wi, camera, t, false), 1);
     }
     for (int s = 2; s <= light.path.n; ++s)
-      if (connectable(light.path[s - 1].guide) && join_vertices(light.path.first(s), share, camera.path.first(t), n, c))
+      if (connectable(light.path[s - 1].guide) &&
+          join_vertices(light_end(light.path.first(s), share), camera.path.first(t), n, c))
         tally.compare(scene, c, joined(light, s, camera, t), s);
   }
   for (int s = 2; s <= light.path.n; ++s)

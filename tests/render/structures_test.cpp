@@ -82,6 +82,43 @@ TEST(BlindPasses, TraceSomePixelsOfLargeImages) {
     EXPECT_NEAR(mean(measure(scene, statistical(integrator), {8, 3})) / truth, 1, 0.02) << integrator;
 }
 
+// Green of a picture, or its means over tiles of so many pixels a side.
+std::vector<double> tiles_of(const Picture& picture, int side) {
+  const int columns = (picture.width + side - 1) / side;
+  std::vector<double> out(size_t(columns * ((picture.height + side - 1) / side)));
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x)
+      out[size_t(y / side * columns + x / side)] +=
+          double(picture.pixels[size_t(3 * (y * picture.width + x) + 1)]) / (side * side);
+  return out;
+}
+
+// Relative variance over pictures: the median over the picture.
+double spread(const std::vector<Picture>& pictures, int side) {
+  std::vector<double> sum, square, found;
+  for (const Picture& picture : pictures) {
+    const std::vector<double> tiles = tiles_of(picture, side);
+    sum.resize(tiles.size()), square.resize(tiles.size());
+    for (size_t i = 0; i < tiles.size(); ++i) sum[i] += tiles[i], square[i] += tiles[i] * tiles[i];
+  }
+  for (size_t i = 0; i < sum.size(); ++i)
+    if (sum[i] > 0) found.push_back(square[i] / (sum[i] * sum[i]) - 1 / double(pictures.size()));
+  std::nth_element(found.begin(), found.begin() + ptrdiff_t(found.size() / 2), found.end());
+  return found[found.size() / 2];
+}
+
+// A light vertex that stands for too much makes grain, not tiles: neighbouring pixels join other ones. (J12)
+TEST(Pools, PixelsOfATileHardlyErrTogether) {
+  const Scene scene = two_rooms(40, 96);
+  const Accel accel(scene);
+  RenderOptions o = statistical("guided-bdpt");
+  o.spp = 8;
+  std::vector<Picture> pictures;
+  for (; pictures.size() < 3; ++o.seed) pictures.push_back(develop(rendered(scene, accel, o).film));
+  const double together = spread(pictures, 16) * 16 * 16 / spread(pictures, 1);
+  EXPECT_LT(together, 40) << "64 where the pixels of a row of tiles share a pool";
+}
+
 // Irradiance (or importance) that camera (light) vertices see on average, as the cells know it. Cells of one size.
 double mean_total(const Fields& fields, Side side) {
   double sum = 0, weights = 0;

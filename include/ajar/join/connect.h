@@ -41,9 +41,18 @@ bool join_escape(const Scene& scene, const Fields* fields, uint32_t light, const
 /// s = 1: next-event estimation at the camera subpath's vertex t - 1. light_paths as in WalkOptions, also below.
 bool join_light(const Scene& scene, const Fields* fields, Sampler& sampler, const Subpath& camera, int t,
                 double light_paths, Candidate& out);
-/// s >= 2, t >= 2: the last vertices of both. share is the light walk's first_share.
-bool join_vertices(std::span<const Vertex> light, double share, std::span<const Vertex> camera, double light_paths,
-                   Candidate& out);
+/// The last vertex of a light subpath, and what joins to it read of the rest.
+struct LightEnd {
+  const Vertex* vertex = nullptr;
+  int s = 0;  ///< vertices of the subpath, at least 2
+  bool delta_before = false;
+  double own_before = 1;  ///< Vertex::own of the vertex before
+  double share = 1;       ///< of the walk (walk.h, first_share)
+};
+/// Of a subpath of two vertices or more.
+LightEnd light_end(std::span<const Vertex> light, double share);
+/// s >= 2, t >= 2: the last vertices of both.
+bool join_vertices(const LightEnd& light, std::span<const Vertex> camera, double light_paths, Candidate& out);
 /// t = 1: the light subpath's vertex s - 1 >= 0 and the lens.
 bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int s, double share, double light_paths,
                  Candidate& out);

@@ -6,18 +6,20 @@
 #include <span>
 
 #include "ajar/core/sampler.h"
-#include "ajar/path/walk.h"
+#include "ajar/join/connect.h"
 
 namespace ajar {
 
-/// Vertices of light subpaths that can be joined (s >= 2), and all vertices that their joins read. (pool.h keeps a
+/// Vertices of light subpaths that can be joined (s >= 2), each with what joins read of the subpath. (pool.h keeps a
 /// few.)
 struct LightStore {
   struct Place {
-    uint32_t first = 0;  ///< of its subpath among the vertices
-    int s = 0;           ///< vertices of the subpath up to this one
+    uint32_t vertex = 0;        ///< which of the vertices
+    int s = 0;                  ///< vertices of its subpath up to this one
+    bool delta_before = false;  ///< see LightEnd
+    bool only_joined = false;   ///< no walk finds what came here: a caustic of a light without extent
+    double own_before = 1, share = 1;
     uint32_t region = no_region;
-    double share = 1;   ///< of the subpath's walk (walk.h, first_share)
     uint32_t path = 0;  ///< number of its subpath
     float counts = 1;   ///< for how many of its kind it stands, where others were left out
     float flux = 0;     ///< luminance that it scatters, see Block
@@ -45,7 +47,8 @@ struct LightStore {
   std::vector<Block> blocks;  ///< place i is in block i % blocks, at i / blocks
   uint32_t paths = 0;         ///< light subpaths that were tried, those that brought no vertex too
 
-  std::span<const Vertex> subpath(const Place& at) const { return {vertices.data() + at.first, size_t(at.s)}; }
+  const Vertex& vertex(const Place& at) const { return vertices[at.vertex]; }
+  LightEnd end(const Place& at) const { return {&vertex(at), at.s, at.delta_before, at.own_before, at.share}; }
 };
 
 /// A camera vertex that is to be joined. What strategies count for is not raised.
