@@ -354,7 +354,7 @@ const Feature all[] = {
      [] { return caustic(rough(MaterialKind::roughdielectric, Microfacet::ggx, 0.15f, 0.15f), true); }},
     {"bent_normals", [] { return with_globe(0.5f, Material{}); }, "pbl", -1, Heuristic::power, 4},
     {"bent_rough_glass",
-     [] { return with_globe(0.3f, rough(MaterialKind::roughdielectric, Microfacet::ggx, 0.3f, 0.3f)); }},
+     [] { return with_globe(0.3f, rough(MaterialKind::roughdielectric, Microfacet::ggx, 0.3f, 0.3f)); }, "pbld"},
     {"bent_glass_caustic",
      [] {
        Scene scene;
