@@ -19,7 +19,7 @@ Scratch& prepare(const Job& job, Batch& batch, uint32_t i, Scratch& scratch) {
 }
 
 // Light vertices of a pool, about: no more than fill blocks that are all looked at. And how many chunks make one: the
-// fewer, the less do pixels err together, but the more memory do they jump about in. (J12)
+// fewer, the less do pixels err together, but the more memory do they jump about in. (J10)
 constexpr double pooled_lights = 1000;
 constexpr uint32_t chunks_per_pool = 16;
 

@@ -61,7 +61,7 @@ Rgb trace_pixel(const Job& job, Sample& sample, bool splat, Scratch& scratch) {
 }
 
 // Which pool a sample joins: neighbours others, and others from pass to pass, so that what a pool has too much of is
-// grain rather than blotches. (J12)
+// grain rather than blotches. (J10)
 uint32_t pool_of(const Job& job, const Sample& sample, uint32_t pools) {
   return uint32_t(hash(hash(job.seed, 0x3f0d), hash(sample.pass, sample.path)) % pools);
 }

@@ -107,7 +107,7 @@ double spread(const std::vector<Picture>& pictures, int side) {
   return found[found.size() / 2];
 }
 
-// A light vertex that stands for too much makes grain, not tiles: neighbouring pixels join other ones. (J12)
+// A light vertex that stands for too much makes grain, not tiles: neighbouring pixels join other ones. (J10)
 TEST(Pools, PixelsOfATileHardlyErrTogether) {
   const Scene scene = two_rooms(40, 96);
   const Accel accel(scene);
