@@ -124,6 +124,13 @@ void put_in_order(const Scene& scene, LightStore& store) {
   for (size_t i = 0; i < keyed.size(); ++i) store.places[i] = keyed[i].second;
 }
 
+// Lights per area here, of the side that has more where light goes through: joins come from either, and none that has a
+// share of them (I1) may seem to bring nothing.
+double most_density(const Job& job, const Vertex& v) {
+  const double lit = density_of_lights(job, v.p, v.ng, v.guide.wo);
+  return v.guide.bsdf.opaque ? lit : std::max(lit, density_of_lights(job, v.p, v.ng, -v.guide.wo));
+}
+
 }  // namespace
 
 Vpls make_vpls(const Scene& scene, const Film& film, bool guided) {
@@ -188,8 +195,7 @@ void place_vpls(const Job& job, uint32_t pass, std::vector<Scratch>& scratches, 
   put_in_order(*job.scene, vpls.store);
   std::vector<float> near;
   for (const LightStore::Place& at : vpls.store.places) {
-    const Vertex& v = vpls.store.vertex(at);
-    near.push_back(float(inv_pi / std::max(density_of_lights(job, v.p, v.ng, v.guide.wo), 1e-30)));
+    near.push_back(float(inv_pi / std::max(most_density(job, vpls.store.vertex(at)), 1e-30)));
   }
   finish(vpls.store, near);
 }

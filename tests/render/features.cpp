@@ -100,6 +100,14 @@ Scene with_envmap() {
   return finished(std::move(scene));
 }
 
+// All light comes through the shade.
+Scene with_lampshade() {
+  Scene scene = open_stage();
+  add_sphere(scene, {-0.2f, 0.3f, 0}, 0.35f, add_material(scene, of_kind(MaterialKind::difftrans)));
+  add_area_light(scene, add_sphere(scene, {-0.2f, 0.3f, 0}, 0.1f, add_diffuse(scene, Rgb(0.5f))), Rgb(20));
+  return finished(std::move(scene));
+}
+
 // Lights of every kind at once, so that the choice among them counts.
 Scene with_many_lights() {
   Scene scene = open_stage();
@@ -329,6 +337,7 @@ const Feature all[] = {
     {"phong", [] { return with_sphere(of_kind(MaterialKind::phong)); }},
     {"rough_diffuse", [] { return with_sphere(of_kind(MaterialKind::roughdiffuse)); }},
     {"diffuse_transmitter", [] { return with_sphere(of_kind(MaterialKind::difftrans)); }},
+    {"lampshade", with_lampshade, "pbl", -1, Heuristic::power, 4},
     {"ward",
      [] {
        Material m = of_kind(MaterialKind::ward);
@@ -354,7 +363,7 @@ const Feature all[] = {
      [] { return caustic(rough(MaterialKind::roughdielectric, Microfacet::ggx, 0.15f, 0.15f), true); }},
     {"bent_normals", [] { return with_globe(0.5f, Material{}); }, "pbl", -1, Heuristic::power, 4},
     {"bent_rough_glass",
-     [] { return with_globe(0.3f, rough(MaterialKind::roughdielectric, Microfacet::ggx, 0.3f, 0.3f)); }, "pbld"},
+     [] { return with_globe(0.3f, rough(MaterialKind::roughdielectric, Microfacet::ggx, 0.3f, 0.3f)); }},
     {"bent_glass_caustic",
      [] {
        Scene scene;

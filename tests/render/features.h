@@ -12,7 +12,7 @@ namespace ajar {
 struct Feature {
   const char* name;
   Scene (*make)();
-  const char* integrators = "pbl";  ///< initials of those that can; d: vpl is a little too dark (docs/limits.md)
+  const char* integrators = "pbl";  ///< initials of those that can
   int max_depth = -1;
   Heuristic heuristic = Heuristic::power;
   uint32_t effort = 1;  ///< factor on the passes, for mistakes that are faint: tests/mutants/list has one for each
