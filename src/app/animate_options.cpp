@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "ajar/core/error.h"
+#include "options.h"
 
 namespace ajar {
 namespace {

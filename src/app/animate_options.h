@@ -2,7 +2,6 @@
 // Leaves: the options of all frames that follow, or an error where they do not go together.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +9,10 @@
 #include "ajar/render/sequence.h"
 #include "ajar/scene/scene.h"
 #include "arguments.h"
+
+namespace CLI {
+class App;
+}
 
 namespace ajar {
 

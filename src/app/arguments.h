@@ -2,7 +2,6 @@
 // Leaves: what it means; Error, with the option and a right example, where it means nothing.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <limits>
 #include <optional>
 #include <string>
@@ -37,14 +36,6 @@ bool is_integrator(const std::string& name);
 void check_integrator(const std::string& name);
 /// Integrators that learn fields, for messages.
 inline constexpr const char* what_learns = "--integrator guided-bdpt, guided-path, guided-vcm or vpl";
-/// For check(): a whole number in that range; one that no type holds is refused as well.
-CLI::Validator whole(uint64_t least, uint64_t most);
-/// The same for any number.
-CLI::Validator number(double least, double most);
-/// The option --threads; 0 where it is not given: all.
-void add_threads(CLI::App& command, int& threads);
-/// The option --at of commands that look at one moment.
-void add_time(CLI::App& command, std::optional<double>& at);
 /// What --max-depth means, for help.
 inline constexpr const char* max_depth_help =
     "edges of the longest path, up to 4096; 1 sees lights alone, -1 is unlimited: 4096 (default: the scene's)";
@@ -57,7 +48,5 @@ bool is_exr(const std::string& path);
 std::string place_of(const std::string& path);
 /// Whether both names lead to one file, there or not.
 bool is_same_file(const std::string& a, const std::string& b);
-/// Values that are there but empty are errors: they come of shell variables that nobody set.
-void refuse_empty(CLI::App& command);
 
 }  // namespace ajar

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -19,6 +18,7 @@
 #include "ajar/report/page.h"
 #include "arguments.h"
 #include "commands.h"
+#include "options.h"
 #include "progress.h"
 #include "say.h"
 #include "stop.h"

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <regex>
 
 #include "ajar/core/error.h"
 #include "arguments.h"
 #include "commands.h"
+#include "options.h"
 #include "version.h"
 
 namespace ajar {

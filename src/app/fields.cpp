@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -13,6 +12,7 @@
 #include "ajar/core/files.h"
 #include "arguments.h"
 #include "commands.h"
+#include "options.h"
 #include "say.h"
 
 namespace ajar {

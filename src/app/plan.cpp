@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -11,6 +10,7 @@
 #include "ajar/scene/load.h"
 #include "arguments.h"
 #include "commands.h"
+#include "options.h"
 #include "planning.h"
 #include "say.h"
 #include "stop.h"

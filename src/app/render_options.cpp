@@ -7,6 +7,7 @@
 
 #include "ajar/core/error.h"
 #include "ajar/render/plan.h"
+#include "options.h"
 #include "versus.h"
 
 namespace ajar {

@@ -2,13 +2,16 @@
 // Leaves: the options of the render that follow, or an error where they do not go together.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "ajar/scene/scene.h"
 #include "arguments.h"
+
+namespace CLI {
+class App;
+}
 
 namespace ajar {
 

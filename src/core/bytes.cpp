@@ -96,11 +96,16 @@ void Reader::text(std::string& s) {
   bytes(s.data(), s.size());
 }
 
-void Reader::finish() {
+void Reader::check_seal() {
   const uint64_t expected = sum;
   uint64_t stored = 0;
   value(stored);
-  require(stored == expected && left == 0);
+  require(stored == expected);
+}
+
+void Reader::finish() {
+  check_seal();
+  require(left == 0);
 }
 
 void write_file(const std::string& path, const FileKind& kind, const std::function<void(Writer&)>& write) {
@@ -108,7 +113,7 @@ void write_file(const std::string& path, const FileKind& kind, const std::functi
     Writer w{sink};
     w.bytes(kind.magic, magic_size);
     write(w);
-    w.value(uint64_t(w.sum));
+    w.seal();
   });
 }
 

@@ -12,7 +12,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind fields_kind = {"AJARfd09", "file of fields", "make one with --save-fields",
+constexpr FileKind fields_kind = {"AJARfd10", "file of fields", "make one with --save-fields",
                                   "learn the fields again with --save-fields"};
 
 bool is_amount(float x) { return x >= 0 && x < infinity; }
@@ -358,7 +358,7 @@ std::string scene_key(const Scene& scene) {
 
 void save_fields(const std::string& path, const StoredFields& stored) {
   write_file(path, fields_kind, [&](Writer& w) {
-    w.text(stored.scene);
+    w.key(stored.scene);
     w.value(stored.passes);
     write(w, stored.fields);
   });
@@ -367,7 +367,7 @@ void save_fields(const std::string& path, const StoredFields& stored) {
 StoredFields load_fields(const std::string& path, const std::string& key) {
   Reader r(path, fields_kind);
   StoredFields stored;
-  r.text(stored.scene);
+  r.key(stored.scene);
   r.value(stored.passes);
   if (!key.empty() && stored.scene != key)
     throw Error(fmt::format("{}: fields of another scene ({}); this one has {}; learn its own with --save-fields", path,

@@ -9,7 +9,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind checkpoint_kind = {"AJARck19", "checkpoint", "render once with --checkpoint",
+constexpr FileKind checkpoint_kind = {"AJARck20", "checkpoint", "render once with --checkpoint",
                                       "start again without --resume"};
 
 // One list of fields for both ways.
@@ -85,7 +85,7 @@ bool is_sound(const Film& film, size_t pixels) {
 
 void save_checkpoint(const std::string& path, const std::string& key, const RenderState& state) {
   write_file(path, checkpoint_kind, [&](Writer& w) {
-    w.text(key);
+    w.key(key);
     film_fields(w, state.film);
     stats_fields(w, state.stats);
     write(w, state.stats.replay);
@@ -102,14 +102,14 @@ void save_checkpoint(const std::string& path, const std::string& key, const Rend
 std::string read_checkpoint_key(const std::string& path) {
   Reader r(path, checkpoint_kind);
   std::string key;
-  r.text(key);
+  r.key(key);
   return key;
 }
 
 void load_checkpoint(const std::string& path, const std::string& key, RenderState& state) {
   Reader r(path, checkpoint_kind);
   std::string stored;
-  r.text(stored);
+  r.key(stored);
   if (stored != key)
     throw Error(fmt::format("{}: made with another scene or other options: {}; give what it was made with, or {}", path,
                             difference(stored, key), checkpoint_kind.cure));

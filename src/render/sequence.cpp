@@ -8,7 +8,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind carried_kind = {"AJARan05", "carried field file", "an animation leaves one beside its frames",
+constexpr FileKind carried_kind = {"AJARan06", "carried field file", "an animation leaves one beside its frames",
                                    "remove it: the fields are learned again from the first frame on"};
 
 // Share of a frame's time that its lessons may take.
@@ -76,7 +76,7 @@ RenderState start_with(const Scene& scene, const RenderOptions& options, Fields 
 
 void save_carried(const std::string& path, const std::string& key, const Carried& carried) {
   write_file(path, carried_kind, [&](Writer& w) {
-    w.text(key);
+    w.key(key);
     w.value(carried.frame);
     write(w, carried.fields);
   });
@@ -86,7 +86,7 @@ Carried load_carried(const std::string& path, const std::string& key) {
   Reader r(path, carried_kind);
   std::string stored;
   Carried carried;
-  r.text(stored);
+  r.key(stored);
   if (stored != key)
     throw Error(fmt::format("{}: fields of another animation ({}); this one is {}; remove the file, or write elsewhere",
                             path, stored, key));

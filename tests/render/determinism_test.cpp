@@ -172,7 +172,20 @@ TEST(Determinism, DamagedOrForeignCheckpointsAreErrors) {
   save_checkpoint(file.path, "key", rendered(scene, accel, o));
   const auto size = std::filesystem::file_size(file.path);
   RenderState state = start_render(scene, o);
-  EXPECT_THROW(load_checkpoint(file.path, "other", state), Error);
+  const auto refusal = [&](const std::string& key) -> std::string {
+    try {
+      load_checkpoint(file.path, key, state);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return {};
+  };
+  EXPECT_NE(refusal("other").find("other options"), std::string::npos) << refusal("other");
+  constexpr std::streamoff key_at = 16;  // after magic and length
+  std::fstream(file.path, std::ios::binary | std::ios::in | std::ios::out).seekp(key_at).put('K');
+  EXPECT_NE(refusal("key").find("is damaged"), std::string::npos) << refusal("key");
+  EXPECT_THROW(read_checkpoint_key(file.path), Error);
+  save_checkpoint(file.path, "key", rendered(scene, accel, o));
   EXPECT_THROW(load_checkpoint(file.path + "no", "key", state), Error);
   RenderState camera_alone = start_render(scene, options_of("path", 1));
   EXPECT_THROW(load_checkpoint(file.path, "key", camera_alone), Error);

@@ -39,6 +39,10 @@ struct Writer {
     bytes(v.data(), v.size() * sizeof(T));
   }
   void text(const std::string& s) { array(std::vector<char>(s.begin(), s.end())); }
+  /// A checksum of all so far.
+  void seal() { value(uint64_t(sum)); }
+  /// What a file's contents are of, sealed: a reader can tell what is damaged from what is another's.
+  void key(const std::string& s) { text(s), seal(); }
 };
 
 /// What a file is to be, for its first bytes and for messages.
@@ -73,7 +77,10 @@ struct Reader {
   void text(std::string& s);
   /// A count of things that take so many bytes each at least; throws Error where the file cannot hold them.
   size_t count(size_t bytes_each);
-  /// Throws Error unless the file ends here with the right checksum.
+  /// Throws Error unless what was read is as it was sealed.
+  void check_seal();
+  void key(std::string& s) { text(s), check_seal(); }
+  /// Throws Error unless the file ends here, with a seal.
   void finish();
   /// Throws Error where a value cannot be.
   void require(bool holds) const;

@@ -1,0 +1,21 @@
+// Enters: a command of the program.
+// Leaves: options that several commands share, and checks of what is typed. The one header that brings CLI11 with it.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+
+namespace ajar {
+
+/// For check(): a whole number in that range; one that no type holds is refused as well.
+CLI::Validator whole(uint64_t least, uint64_t most);
+/// The same for any number.
+CLI::Validator number(double least, double most);
+/// The option --threads; 0 where it is not given: all.
+void add_threads(CLI::App& command, int& threads);
+/// The option --at of commands that look at one moment.
+void add_time(CLI::App& command, std::optional<double>& at);
+/// Values that are there but empty are errors: they come of shell variables that nobody set.
+void refuse_empty(CLI::App& command);
+
+}  // namespace ajar
