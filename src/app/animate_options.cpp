@@ -59,6 +59,7 @@ void add_options(CLI::App& command, AnimateArguments& arguments) {
   c->add_option("--guide", a->guide, "which subpaths the learned fields guide: both, camera or light (default both)")
       ->check(CLI::IsMember({"both", "camera", "light"}));
   c->add_option("--field-memory", a->field_memory, "memory that learned fields may take: 512K, 32M (default), 1G");
+  c->add_flag("--limit-fireflies", a->limit_fireflies, "as for ajar render");
   c->add_option("--reference", a->reference, "frames to measure error and flicker against: DIR/ref_%04d.exr");
   c->add_option("--video", a->video, "film to make of the frames with ffmpeg: OUT.mp4, .mov, .mkv, .webm, .gif ...");
   c->add_option("--fps", a->fps, "of the film (default 24)")->check(number(1, 240));
@@ -84,6 +85,7 @@ RenderOptions render_options(const AnimateArguments& a, const Scene& scene) {
   o.seed = a.seed;
   o.threads = a.threads;
   set_max_depth(a.max_depth, scene, o);
+  o.limit_fireflies = a.limit_fireflies;
   check_learning(a, o.integrator);
   if (o.integrator == "vpl" && a.guide != "both")
     throw Error(fmt::format("--guide {}: vpl guides light subpaths alone; leave it out", a.guide));

@@ -155,6 +155,10 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
       ->check(CLI::IsMember({"sobol", "independent"}));
   c->add_option("-D", a->defines, "name=value: a parameter of the scene")->allow_extra_args(false);
   add_time(*c, a->at);
+  c->add_flag(
+      "--limit-fireflies", a->limit_fireflies,
+      "darken what is far brighter than other passes saw around it (from the fourth pass on): fewer sparks, and a bias "
+      "that time takes away");
   c->add_option("--aov", a->features, "more channels in the EXR: albedo,normal,position,variance")
       ->delimiter(',')
       ->check(CLI::IsMember({"albedo", "normal", "position", "variance"}));
@@ -246,6 +250,7 @@ RenderOptions render_options(const RenderArguments& a, Scene& scene, bool planne
   o.roulette_depth = a.roulette_depth;
   o.heuristic = a.heuristic == "balance" ? Heuristic::balance : Heuristic::power;
   o.sampler = a.sampler == "independent" ? SamplerKind::independent : SamplerKind::sobol;
+  o.limit_fireflies = a.limit_fireflies;
   o.techniques = !a.techniques.empty();
   o.leaves_out = (a.plan.empty() || a.plan == "auto") && a.save_fields.empty();
   o.next_event = !a.no_next_event;

@@ -5,6 +5,7 @@
 
 #include "ajar/core/parallel.h"
 #include "ajar/core/sampler.h"
+#include "ajar/film/fireflies.h"
 
 namespace ajar {
 namespace {
@@ -117,6 +118,7 @@ void merge(Film& film, const std::vector<std::vector<Splat>>& chunks) {
 void drop_passes(Film& film) {
   for (auto* sums : {&film.camera_sum, &film.splat_sum, &film.half_sum, &film.square_sum})
     std::fill(sums->begin(), sums->end(), glm::dvec3(0));
+  std::fill(film.brightest.begin(), film.brightest.end(), Film::Bright{});
   film.dropped += film.passes;
   film.passes = 0;
 }
@@ -136,6 +138,7 @@ void finish_pass(Film& film) {
       }
       if (film.passes % 2 == 0) film.half_sum[i] += x;
       film.square_sum[i] += x * x;
+      if (!film.brightest.empty()) note(film, i, Rgb(x));
     }
   });
   ++film.passes;
@@ -146,15 +149,18 @@ Picture develop(const Film& film) {
   Picture out{film.width, film.height, {"R", "G", "B"}, std::vector<float>(3 * film.pixels())};
   const double share = share_done(film), per_path = 1.0 / double(film.pixels());
   const glm::ivec2 shift = tile_shift(film);
+  const std::vector<float> most = film.brightest.empty() ? std::vector<float>() : limits(film);
   for (int y = 0; y < film.height; ++y)
     for (int x = 0; x < film.width; ++x) {
       const size_t i = size_t(y) * film.width + x;
       const bool done = is_done(film, shift, x, y);
       glm::dvec3 value(0);
       const double n = film.passes + (done ? 1.0 : 0.0);
-      if (n > 0) value += (film.camera_sum[i] + (done ? glm::dvec3(film.camera[i]) : glm::dvec3(0))) / n;
+      const Rgb now = most.empty() ? film.camera[i] : limited(film.camera[i], most[i]);
+      if (n > 0) value += (film.camera_sum[i] + (done ? glm::dvec3(now) : glm::dvec3(0))) / n;
       if (film.splats && film.passes + share > 0)
         value += (film.splat_sum[i] + glm::dvec3(film.splat[i]) * per_path) / (film.passes + share);
+      if (!most.empty() && n > 0) value -= excess(film, i, most[i]) / n;
       for (int c = 0; c < 3; ++c) out.pixels[3 * i + c] = float(value[c]);
     }
   return out;

@@ -18,6 +18,7 @@ void film_fields(Io& io, State& film) {
   io.value(film.width), io.value(film.height), io.value(film.passes), io.value(film.dropped), io.value(film.chunks);
   io.array(film.camera), io.array(film.splat);
   io.array(film.camera_sum), io.array(film.splat_sum), io.array(film.half_sum), io.array(film.square_sum);
+  io.array(film.brightest);
 }
 
 template <class Io, class State>
@@ -78,7 +79,9 @@ bool is_sound(const Film& film, size_t pixels) {
   const size_t splats = film.splats ? pixels : 0;
   return film.pixels() == pixels && film.camera.size() == pixels && film.camera_sum.size() == pixels &&
          film.half_sum.size() == pixels && film.square_sum.size() == pixels && film.splat.size() == splats &&
-         film.splat_sum.size() == splats && film.chunks < chunk_count(film) && film.dropped % 2 == 0;
+         film.splat_sum.size() == splats &&
+         (film.brightest.empty() || film.brightest.size() == Film::brightest_kept * pixels) &&
+         film.chunks < chunk_count(film) && film.dropped % 2 == 0;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "ajar/core/parallel.h"
 #include "ajar/field/portals.h"
 #include "ajar/field/walls.h"
+#include "ajar/film/fireflies.h"
 #include "batch.h"
 #include "chunk.h"
 
@@ -289,6 +290,7 @@ RenderState start_render(const Scene& scene, const RenderOptions& options) {
   RenderState state;
   const Integrator& integrator = find_integrator(options.integrator);
   state.film = make_film(scene.camera, scene.filter, integrator.splats);
+  if (options.limit_fireflies) limit_fireflies(state.film);
   state.pyramid.kept = options.techniques;
   if (!learns(options)) return state;
   LearnOptions learn = options.learn;

@@ -47,6 +47,7 @@ std::optional<Fields> teach(const Scene& scene, const Accel& accel, const Render
                             const SequenceOptions& sequence, const Carried* before, const std::vector<Box>& moved,
                             uint32_t frame, const Monitor& monitor) {
   RenderOptions teaching = options;
+  teaching.limit_fireflies = false;  // in no image
   teaching.seed = teaching_seed(sequence, options.seed, frame);
   RenderState state = start_render(scene, teaching);
   if (before) {

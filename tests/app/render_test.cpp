@@ -198,6 +198,24 @@ TEST_F(Render, TimeSufficesForAWholePass) {
   EXPECT_EQ(run({"--integrator", "guided-bdpt", "--train", "6", "--cpu-time", "1h", "--spp", "1"})["spp"], 1);
 }
 
+TEST_F(Render, FirefliesAreLimitedOnRequest) {
+  const auto plain = run({"--integrator", "path", "--spp", "4"});
+  EXPECT_FALSE(plain["options"].contains("limit_fireflies"));
+  const Picture as_it_is = read_image(out);
+  const auto limited = run({"--integrator", "path", "--spp", "4", "--limit-fireflies", "--checkpoint", state});
+  EXPECT_EQ(limited["options"]["limit_fireflies"], true);
+  const Picture darker = read_image(out);
+  size_t changed = 0;
+  for (size_t i = 0; i < darker.pixels.size(); ++i) {
+    EXPECT_LE(darker.pixels[i], as_it_is.pixels[i] * 1.0001f);
+    changed += darker.pixels[i] < as_it_is.pixels[i] * 0.999f;
+  }
+  EXPECT_GT(changed, 0u);
+  EXPECT_LT(changed, darker.pixels.size() / 2);
+  EXPECT_NE(kit::error_of([&] { run({"--integrator", "path", "--spp", "8", "--resume", state}); }).find("other options"),
+            std::string::npos);
+}
+
 // A checkpoint is of the files that it was made from, wherever they lie.
 TEST_F(Render, ResumeKnowsTheFilesOfTheScene) {
   namespace fs = std::filesystem;

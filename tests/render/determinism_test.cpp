@@ -142,7 +142,8 @@ TEST(Determinism, CheckpointAmidAPassIsTheStraightRun) {
 TEST(Determinism, GuidedCheckpointsAreTheStraightRun) {
   const Scene scene = strip(true);
   const Accel accel(scene);
-  const RenderOptions o = options_of("guided-bdpt", 14);
+  RenderOptions o = options_of("guided-bdpt", 14);
+  o.limit_fireflies = true;
   const RenderState straight = rendered(scene, accel, o);
   EXPECT_EQ(straight.film.dropped, blind_generations);
   EXPECT_EQ(straight.learning.fields.generation, young_generations + 1) << "learned once since";

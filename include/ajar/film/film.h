@@ -29,9 +29,17 @@ struct Film {
   std::vector<glm::dvec3> camera_sum, splat_sum;
   std::vector<glm::dvec3> half_sum;    ///< of (camera + splat) over even passes: one of two independent halves
   std::vector<glm::dvec3> square_sum;  ///< of (camera + splat) per pass
-  uint32_t passes = 0;                 ///< finished
-  uint32_t dropped = 0;                ///< passes before those, no longer in the sums; even
-  uint32_t chunks = 0;                 ///< of the pass at work that are done
+  /// What passes brought a pixel at their brightest (camera + splat), so many of each pixel, in order of luminance, the
+  /// rest black; empty: fireflies are not limited (fireflies.h).
+  static constexpr int brightest_kept = 4;
+  struct Bright {
+    Rgb value{0};
+    uint32_t pass = 0;
+  };
+  std::vector<Bright> brightest;
+  uint32_t passes = 0;   ///< finished
+  uint32_t dropped = 0;  ///< passes before those, no longer in the sums; even
+  uint32_t chunks = 0;   ///< of the pass at work that are done
 
   size_t pixels() const { return size_t(width) * size_t(height); }
 };
@@ -64,7 +72,8 @@ void merge(Film& film, const std::vector<std::vector<Splat>>& chunks);
 void drop_passes(Film& film);
 /// Closes the pass at work.
 void finish_pass(Film& film);
-/// Linear RGB estimate; includes the chunks of the pass at work that are done.
+/// Linear RGB estimate, its fireflies limited where the film is to; includes the chunks of the pass at work that are
+/// done.
 Picture develop(const Film& film);
 /// Variance of the estimate per pixel and channel, from the spread of the passes; zero before the second pass. Exact in
 /// expectation for independent numbers. Passes of a low-discrepancy sequence err less together than apart, so there it

@@ -1,0 +1,82 @@
+#include "ajar/film/fireflies.h"
+
+#include <algorithm>
+#include <array>
+
+#include "ajar/core/parallel.h"
+
+namespace ajar {
+namespace {
+
+using Bright = Film::Bright;
+constexpr int kept = Film::brightest_kept;
+constexpr int reach = 2;
+
+// The brightest passes so far, each by the brightest that it brought some pixel.
+struct Passes {
+  struct Pass {
+    float luminance = 0;
+    uint32_t number = 0;
+  };
+  std::array<Pass, kept> best{};
+
+  void add(float luminance, uint32_t number) {
+    if (!(luminance > best.back().luminance)) return;
+    int at = kept - 1;  // whose place it takes
+    for (int i = 0; i < kept; ++i)
+      if (best[i].luminance > 0 && best[i].number == number) {
+        if (best[i].luminance >= luminance) return;
+        at = i;
+      }
+    for (; at > 0 && best[at - 1].luminance < luminance; --at) best[at] = best[at - 1];
+    best[at] = {luminance, number};
+  }
+};
+
+float limit_at(const Film& film, int x, int y) {
+  Passes passes;
+  for (int py = std::max(0, y - reach); py <= std::min(film.height - 1, y + reach); ++py)
+    for (int px = std::max(0, x - reach); px <= std::min(film.width - 1, x + reach); ++px) {
+      const Bright* of = &film.brightest[kept * (size_t(py) * film.width + px)];
+      for (int k = 0; k < kept; ++k) passes.add(luminance(of[k].value), of[k].pass);
+    }
+  return firefly_slack * passes.best.back().luminance;
+}
+
+}  // namespace
+
+void limit_fireflies(Film& film) { film.brightest.assign(kept * film.pixels(), {}); }
+
+void note(Film& film, size_t pixel, const Rgb& value) {
+  Bright* of = &film.brightest[kept * pixel];
+  const float l = luminance(value);
+  if (!(l > luminance(of[kept - 1].value))) return;
+  int at = kept - 1;
+  for (; at > 0 && luminance(of[at - 1].value) < l; --at) of[at] = of[at - 1];
+  of[at] = {value, film.passes};
+}
+
+std::vector<float> limits(const Film& film) {
+  std::vector<float> out(film.pixels(), infinity);
+  if (film.passes < uint32_t(kept)) return out;
+  parallel_for(film.height, [&](int y) {
+    for (int x = 0; x < film.width; ++x) out[size_t(y) * film.width + x] = limit_at(film, x, y);
+  });
+  return out;
+}
+
+Rgb limited(const Rgb& value, float limit) {
+  const float l = luminance(value);
+  return l > limit ? value * (limit / l) : value;
+}
+
+glm::dvec3 excess(const Film& film, size_t pixel, float limit) {
+  glm::dvec3 sum(0);
+  for (int k = 0; k < kept; ++k) {
+    const Rgb& value = film.brightest[kept * pixel + k].value;
+    sum += glm::dvec3(value - limited(value, limit));
+  }
+  return sum;
+}
+
+}  // namespace ajar

@@ -1,0 +1,142 @@
+// What limits fireflies, against its definition worked out pass by pass, and what it must leave alone.
+#include "ajar/film/fireflies.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "ajar/core/sampler.h"
+
+namespace ajar {
+namespace {
+
+Film film_of(int width, int height) {
+  Camera camera;
+  camera.crop_width = camera.width = width, camera.crop_height = camera.height = height;
+  Film film = make_film(camera, make_filter(FilterKind::box), false);
+  limit_fireflies(film);
+  return film;
+}
+
+void pass(Film& film, const std::vector<Rgb>& camera) {
+  film.camera = camera;
+  finish_pass(film);
+}
+
+// A number in (0, 1).
+double number(uint64_t& state) {
+  state = hash(state, 1);
+  return (double(state >> 11) + 0.5) * 0x1p-53;
+}
+
+// Of infinite variance: Pareto's law with an exponent of 1.5, whose mean is 3.
+double pareto(uint64_t& state) { return std::pow(number(state), -1 / 1.5); }
+
+std::vector<Rgb> noise(size_t pixels, uint64_t& state) {
+  std::vector<Rgb> out;
+  for (size_t i = 0; i < pixels; ++i) {
+    const auto x = float(pareto(state));
+    out.emplace_back(x * Vec3(0.5f, 1, 2));
+  }
+  return out;
+}
+
+float channel(const Picture& p, int x, int y, int c = 1) { return p.pixels[size_t(3 * (y * p.width + x) + c)]; }
+
+// (F1) of docs/notation.md, from all that the passes brought.
+double by_definition(const std::vector<std::vector<Rgb>>& passes, int width, int height, int x, int y, int c) {
+  std::vector<float> brightest;
+  for (const std::vector<Rgb>& p : passes) {
+    float most = 0;
+    for (int py = std::max(0, y - 2); py <= std::min(height - 1, y + 2); ++py)
+      for (int px = std::max(0, x - 2); px <= std::min(width - 1, x + 2); ++px)
+        most = std::max(most, luminance(p[size_t(py * width + px)]));
+    brightest.push_back(most);
+  }
+  std::sort(brightest.begin(), brightest.end(), std::greater<>());
+  const float limit = 2 * brightest[3];
+  double sum = 0;
+  for (const std::vector<Rgb>& p : passes) {
+    const Rgb v = p[size_t(y * width + x)];
+    sum += double(v[c]) * std::min(1.0, double(limit) / double(luminance(v)));
+  }
+  return sum / double(passes.size());
+}
+
+TEST(Fireflies, AreLimitedByWhatFourPassesSawAround) {
+  uint64_t state = 7;
+  for (const auto [width, height] : {std::pair{9, 7}, std::pair{1, 5}, std::pair{2, 1}}) {
+    Film film = film_of(width, height);
+    std::vector<std::vector<Rgb>> passes;
+    for (int n = 0; n < 23; ++n) {
+      passes.push_back(noise(film.pixels(), state));
+      pass(film, passes.back());
+      if (n < 3) continue;
+      const Picture found = develop(film);
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+          for (int c = 0; c < 3; ++c) {
+            const double expected = by_definition(passes, width, height, x, y, c);
+            ASSERT_NEAR(channel(found, x, y, c), expected, 1e-5 * expected) << x << "," << y << " pass " << n;
+          }
+    }
+  }
+}
+
+TEST(Fireflies, WhatComesInEveryPassStays) {
+  Film film = film_of(8, 8);
+  std::vector<Rgb> image(64, Rgb(0.1f));
+  image[27] = Rgb(1000, 500, 2000);  // a lamp of one pixel
+  for (int n = 0; n < 4; ++n) {
+    pass(film, image);
+    EXPECT_FLOAT_EQ(channel(develop(film), 3, 3), 500) << n << ": before the fourth pass nothing is limited";
+  }
+  EXPECT_FLOAT_EQ(channel(develop(film), 4, 3), 0.1f);
+}
+
+TEST(Fireflies, OneSparkIsTakenBackToTwiceWhatIsAround) {
+  Film film = film_of(8, 8);
+  const std::vector<Rgb> image(64, Rgb(1));
+  for (int n = 0; n < 9; ++n) pass(film, image);
+  std::vector<Rgb> spark = image;
+  spark[27] = Rgb(1e6f);
+  pass(film, spark);
+  const Picture found = develop(film);
+  EXPECT_FLOAT_EQ(channel(found, 3, 3), 1.1f) << "nine times 1, once 2";
+  EXPECT_FLOAT_EQ(channel(found, 4, 3), 1);
+  film.camera = spark, film.chunks = chunk_count(film);
+  EXPECT_FLOAT_EQ(channel(develop(film), 3, 3), 12 / 11.0f) << "the pass at work is limited as well";
+}
+
+// However heavy the tail, what is taken away is at most four passes of all: with a mean, it is nothing in the end.
+TEST(Fireflies, LimitsFadeAsPassesGoOn) {
+  const auto error = [](int passes) {
+    Film film = film_of(16, 16);
+    uint64_t state = 3;
+    for (int n = 0; n < passes; ++n) pass(film, noise(film.pixels(), state));
+    const Picture found = develop(film);
+    double sum = 0, limited = 0;
+    for (size_t i = 0; i < film.pixels(); ++i)
+      sum += film.camera_sum[i].y / passes, limited += double(found.pixels[3 * i + 1]);
+    EXPECT_LT(limited, sum);
+    return (sum - limited) / sum;
+  };
+  const double few = error(16), many = error(4096);
+  EXPECT_GT(few, 0.02);
+  EXPECT_LT(many, 0.25 * few);
+}
+
+TEST(Fireflies, DroppedPassesAreForgotten) {
+  Film film = film_of(4, 4);
+  for (int n = 0; n < 4; ++n) pass(film, std::vector<Rgb>(16, Rgb(100)));
+  drop_passes(film);
+  for (int n = 0; n < 3; ++n) pass(film, std::vector<Rgb>(16, Rgb(1)));
+  std::vector<Rgb> spark(16, Rgb(1));
+  spark[5] = Rgb(50);
+  pass(film, spark);
+  EXPECT_FLOAT_EQ(channel(develop(film), 1, 1), 1.25f);
+}
+
+}  // namespace
+}  // namespace ajar
