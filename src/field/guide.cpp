@@ -1,5 +1,7 @@
 #include "ajar/field/guide.h"
 
+#include "ajar/scene/bsdf/through.h"
+
 namespace ajar {
 namespace {
 
@@ -49,14 +51,8 @@ float breadth(const Lobe& lobe) {
   }
 }
 
-// What turns light to the other side is left alone: other cells guide there, and the densities of the way back.
-bool turns_through(const Lobe& lobe) {
-  const bool trans = lobe.kind == LobeKind::principled && lobe.principled.spec_trans > 0;
-  return trans || lobe.kind == LobeKind::dielectric || lobe.kind == LobeKind::thindielectric ||
-         lobe.kind == LobeKind::roughdielectric || lobe.kind == LobeKind::difftrans;
-}
-
-// Of what does not pass straight through.
+// Of what does not pass straight through. What turns light to the other side is left alone: other cells guide there,
+// and the densities of the way back.
 float breadth(const Bsdf& bsdf) {
   float sum = 0;
   for (int i = 0; i < bsdf.count; ++i) {

@@ -32,12 +32,18 @@ void put(LightStore::Block& b, uint32_t i, const Vertex& v, const LightStore::Pl
   b.matt[i] = gloss.matt, b.peak[i] = gloss.peak, b.f0[i] = gloss.f0, b.alpha[i] = gloss.alpha;
 }
 
-// Whether no walk finds what a light subpath brings its last vertex: a caustic of a light without extent.
+// Whether no walk finds what a light subpath brings its last vertex: of a light without extent, where delta events
+// leave no edge that next-event estimation or a join could be made at.
 bool only_joined(std::span<const Vertex> light) {
-  const auto end = light.end() - 1;
   const LightPoint& point = light[0].point;
-  return light.size() > 2 && (point.delta_position || point.delta_direction) &&
-         std::all_of(light.begin() + 1, end, [](const Vertex& v) { return v.delta; });
+  if (light.size() <= 2 || !(point.delta_position || point.delta_direction)) return false;
+  bool joins = true;  // the vertex before can be joined
+  for (size_t i = 1; i < light.size(); ++i) {
+    const bool joined = i + 1 == light.size() || !light[i].delta;
+    if (joins && joined) return false;
+    joins = joined;
+  }
+  return true;
 }
 
 Seer seer_of(const Vertex& v, float near = 0, float near_lights = 1) {

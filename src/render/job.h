@@ -123,8 +123,9 @@ void trace_light(const Job&, Sample&, Scratch&);
 void trace_vpl(const Job&, Sample&, Scratch&);
 /// How many lights and joins there are to be.
 Vpls make_vpls(const Scene&, const Film&, bool guided);
-/// Whether a vertex may be a light: what it scatters is not so narrow that hardly any pixel ever sees it.
-bool can_light(const Guide& y);
+/// Whether a vertex may be a light: what it scatters is not so narrow that hardly any pixel ever sees it. The same from
+/// both sides of what light goes through: joins and walks, which may come from different ones, must agree.
+bool can_light(const Scene& scene, const Surface& surface, const Guide& y);
 /// Lights per area at a point of a surface, on the side of direction w: of all that are kept, as far as fields know. A
 /// function of the place, whatever the pass's lights are.
 double density_of_lights(const Job& job, const Vec3& p, const Vec3& ng, const Vec3& w);

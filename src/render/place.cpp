@@ -12,6 +12,7 @@ namespace {
 // What a group of light subpaths left.
 struct Part {
   LightStore store;
+  std::vector<bool> may_light;  // of the subpath at work: its last vertex, by how many there are
   std::vector<Splat> splats;
 };
 
@@ -56,6 +57,7 @@ void trace_lights(const Job& job, Sampler sampler, Scratch& scratch, Part& out) 
   Subpath& light = scratch.light;
   Walk walk;
   light.n = 0;
+  out.may_light.assign(2, false);
   if (start_light(*job.scene, job.walk, sampler, light, walk)) {
     ++scratch.counters.light_paths;
     Surface surface;
@@ -65,9 +67,14 @@ void trace_lights(const Job& job, Sampler sampler, Scratch& scratch, Part& out) 
       if (!step(*job.scene, *job.accel, job.walk, light, walk, surface)) break;
       if (light.n == 2) walk.first_share = share_of_next_event(*job.scene, light, walk);
       join_lens(job, sampler, walk.first_share, scratch, out.splats);
+      out.may_light.push_back(can_light(*job.scene, surface, light[light.n - 1].guide));
     }
   }
+  const size_t before = out.store.places.size();
   add(out.store, light, walk.first_share);
+  std::vector<LightStore::Place>& places = out.store.places;
+  const auto is_none = [&](const LightStore::Place& at) { return !out.may_light[size_t(at.s)] && !at.only_joined; };
+  places.erase(std::remove_if(places.begin() + ptrdiff_t(before), places.end(), is_none), places.end());
 }
 
 // Lights that a guided pass keeps, about.
@@ -82,9 +89,6 @@ std::vector<Part> trace_parts(const Job& job, uint64_t stream, uint32_t pass, st
     const uint32_t from = uint32_t(part) * grain, to = std::min(paths, from + grain);
     for (uint32_t i = from; i < to; ++i)
       trace_lights(job, numbers_of(job, stream, pass, i), scratches[thread_slot()], parts[part]);
-    const LightStore& store = parts[part].store;
-    std::erase_if(parts[part].store.places,
-                  [&](const LightStore::Place& at) { return !can_light(store.vertex(at).guide) && !at.only_joined; });
   });
   return parts;
 }
@@ -146,9 +150,14 @@ Vpls make_vpls(const Scene& scene, const Film& film, bool guided) {
   return v;
 }
 
-bool can_light(const Guide& y) {
+bool can_light(const Scene& scene, const Surface& surface, const Guide& y) {
   constexpr float least_alpha = 0.11f;
-  return least_roughness(y.bsdf) >= least_alpha;
+  if (least_roughness(y.bsdf) < least_alpha) return false;
+  if (y.bsdf.opaque) return true;
+  Frame frame = surface.frame;
+  Bsdf behind;
+  resolve(scene, surface, -y.wo, frame, behind);
+  return least_roughness(behind) >= least_alpha;
 }
 
 double density_of_lights(const Job& job, const Vec3& p, const Vec3& ng, const Vec3& w) {
@@ -195,7 +204,9 @@ void place_vpls(const Job& job, uint32_t pass, std::vector<Scratch>& scratches, 
   put_in_order(*job.scene, vpls.store);
   std::vector<float> near;
   for (const LightStore::Place& at : vpls.store.places) {
-    near.push_back(float(inv_pi / std::max(most_density(job, vpls.store.vertex(at)), 1e-30)));
+    const double density = most_density(job, vpls.store.vertex(at));
+    near.push_back(at.only_joined ? 0
+                                  : float(inv_pi / std::max(density, 1e-30)));  // no walk shares what is only joined
   }
   finish(vpls.store, near);
 }

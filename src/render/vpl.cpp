@@ -68,17 +68,25 @@ double share_at(const Job& job, const LightStore::Place& at, const Vec3& x, doub
 
 // Whether the walk is to find what its last vertex y scatters, which joins at the one before could have found as well.
 // What passes y by a delta event they could not.
-bool is_walked(Work& work) {
+bool is_walked(Work& work, const Surface& surface) {
   const Subpath& camera = work.scratch.camera;
   const Vertex &x = camera[camera.n - 2], &y = camera[camera.n - 1];
   if (camera.n < 3 || x.delta || !connectable(x.guide) || !connectable(y.guide)) return true;
-  const double share = can_light(y.guide) ? share_of_joins(work.job, y.p, y.ng, y.guide.wo, y.own) : 0;
+  const double share =
+      can_light(*work.job.scene, surface, y.guide) ? share_of_joins(work.job, y.p, y.ng, y.guide.wo, y.own) : 0;
   return work.sample.sampler.next1() >= share;
 }
 
-// What camera subpaths know of W: only how light subpaths, which it guides, would have found a caustic.
+// Whether a delta event at the last vertex would make a caustic, where other events take part of the choice.
+bool may_be_caustic(const Subpath& camera) {
+  return camera.n == 3 && !camera[1].delta && connectable(camera[1].guide) && camera[2].guide.bsdf.has_delta &&
+         connectable(camera[2].guide);
+}
+
+// What camera subpaths know of W: only how light subpaths, which it guides, would have found a caustic. At the delta
+// event itself, that they take it less often than the bsdf would.
 void guide_way_back(const Job& job, const Surface& surface, Subpath& camera) {
-  if (!job.guided || !is_caustic(camera, camera.n)) return;
+  if (!job.guided || !(is_caustic(camera, camera.n) || may_be_caustic(camera))) return;
   Guide& guide = camera[camera.n - 1].guide;
   Guide guided;
   make_guide(*job.scene, job.walk.fields, Side::camera, surface, guide.wo, guided);
@@ -173,7 +181,7 @@ void walk_on(Work& work, Walk& walk) {
     guide_way_back(job, surface, camera);
     join_lights(work, surface);
     if (camera.n == 2 && is_clear(camera[1])) return;
-    walked = is_walked(work);
+    walked = is_walked(work, surface);
     if (!walked || camera.n > job.walk.max_edges || !connectable(camera[camera.n - 1].guide)) continue;
     join_next_event(work);
     join_vpls(work);

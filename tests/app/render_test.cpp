@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ajar/core/error.h"
+#include "ajar/film/picture.h"
 #include "app/command_line.h"
 #include "app/planning.h"
 #include "kit/files.h"
@@ -201,10 +202,10 @@ TEST_F(Render, TimeSufficesForAWholePass) {
 TEST_F(Render, FirefliesAreLimitedOnRequest) {
   const auto plain = run({"--integrator", "path", "--spp", "4"});
   EXPECT_FALSE(plain["options"].contains("limit_fireflies"));
-  const Picture as_it_is = read_image(out);
+  const Picture as_it_is = read_picture(out);
   const auto limited = run({"--integrator", "path", "--spp", "4", "--limit-fireflies", "--checkpoint", state});
   EXPECT_EQ(limited["options"]["limit_fireflies"], true);
-  const Picture darker = read_image(out);
+  const Picture darker = read_picture(out);
   size_t changed = 0;
   for (size_t i = 0; i < darker.pixels.size(); ++i) {
     EXPECT_LE(darker.pixels[i], as_it_is.pixels[i] * 1.0001f);
@@ -212,7 +213,9 @@ TEST_F(Render, FirefliesAreLimitedOnRequest) {
   }
   EXPECT_GT(changed, 0u);
   EXPECT_LT(changed, darker.pixels.size() / 2);
-  EXPECT_NE(kit::error_of([&] { run({"--integrator", "path", "--spp", "8", "--resume", state}); }).find("other options"),
+  EXPECT_NE(kit::error_of([&] {
+              run({"--integrator", "path", "--spp", "8", "--resume", state});
+            }).find("other options"),
             std::string::npos);
 }
 

@@ -108,6 +108,19 @@ Scene with_lampshade() {
   return finished(std::move(scene));
 }
 
+// What is matt from within, where the light comes from, is a sharp mirror from without.
+Scene with_two_faced_shade() {
+  Scene scene = open_stage();
+  Material blend = of_kind(MaterialKind::blend), faces = of_kind(MaterialKind::twosided);
+  faces.nested = {add_material(scene, rough(MaterialKind::roughconductor, Microfacet::ggx, 0.05f, 0.05f)),
+                  add_diffuse(scene, Rgb(0.5f)), none, none};
+  blend.nested = {add_material(scene, of_kind(MaterialKind::difftrans)), add_material(scene, faces), none, none};
+  blend.weight = Slot(0.3f);
+  add_sphere(scene, {-0.2f, 0.3f, 0}, 0.35f, add_material(scene, blend));
+  add_area_light(scene, add_sphere(scene, {-0.2f, 0.3f, 0}, 0.1f, add_diffuse(scene, Rgb(0.5f))), Rgb(20));
+  return finished(std::move(scene));
+}
+
 // Lights of every kind at once, so that the choice among them counts.
 Scene with_many_lights() {
   Scene scene = open_stage();
@@ -338,6 +351,7 @@ const Feature all[] = {
     {"rough_diffuse", [] { return with_sphere(of_kind(MaterialKind::roughdiffuse)); }},
     {"diffuse_transmitter", [] { return with_sphere(of_kind(MaterialKind::difftrans)); }},
     {"lampshade", with_lampshade, "pbl", -1, Heuristic::power, 4},
+    {"two_faced_shade", with_two_faced_shade},
     {"ward",
      [] {
        Material m = of_kind(MaterialKind::ward);

@@ -1,4 +1,5 @@
 #include "ajar/scene/bsdf.h"
+#include "ajar/scene/bsdf/through.h"
 #include "ajar/scene/scene.h"
 #include "visit.h"
 
@@ -10,9 +11,10 @@ struct Resolver {
   const Surface& surface;
   Frame& frame;
   Bsdf& out;
-  bool back;            // the viewer is behind ng
-  bool turned = false;  // frame.n was turned to the viewer; until the end s and t stay, as in a mirror
-  bool split = false;   // inside a sum whose branches have normals of their own
+  bool back;               // the viewer is behind ng
+  bool turned = false;     // frame.n was turned to the viewer; until the end s and t stay, as in a mirror
+  bool split = false;      // inside a sum whose branches have normals of their own
+  bool two_faced = false;  // another material is behind
 };
 
 Rgb look(const Resolver& r, const Slot& slot) {
@@ -187,7 +189,9 @@ void add(Resolver& r, uint32_t id, float weight);
 
 void add_leaf(Resolver& r, const Material& m, float weight) {
   Bsdf& out = r.out;
-  if (out.count == max_lobes || !set_lobe(r, m, out.lobes[out.count])) return;
+  if (out.count == max_lobes) return;
+  // A black lobe is left out, unless it is a part of a sum and may not be black from behind, see choose.
+  if (!set_lobe(r, m, out.lobes[out.count]) && !(r.two_faced && weight < 1)) return;
   const LobeKind kind = out.lobes[out.count].kind;
   out.has_delta |= is_delta(kind);
   out.has_smooth |= is_smooth(kind);
@@ -214,6 +218,7 @@ void add(Resolver& r, uint32_t id, float weight) {
     id = m.nested[0];
     switch (m.kind) {
       case MaterialKind::twosided:
+        r.two_faced |= m.nested[1] != none;
         if (r.back && m.nested[1] != none) id = m.nested[1];
         if (r.back && !r.turned) r.frame.n = -r.frame.n, r.turned = true;
         break;
@@ -255,15 +260,18 @@ void add(Resolver& r, uint32_t id, float weight) {
 }
 
 // Probabilities in proportion to the albedo at a fixed angle: independent of direction, so that both densities share
-// them.
-void choose(Bsdf& out) {
+// them. With another material behind, what turns light through has its weight, which is the same from both sides.
+void choose(Bsdf& out, bool two_faced) {
   const Vec3 tilted{0.6f, 0, 0.8f};
-  float sum = 0;
+  const auto is_fixed = [&](int i) { return two_faced && turns_through(out.lobes[i]); };
+  float fixed = 0, sum = 0;
   for (int i = 0; i < out.count; ++i) {
     const Rgb a = visit(out.lobes[i], [&](const auto& lobe) { return albedo(lobe, tilted); });
-    sum += out.choice[i] = out.weights[i] * std::max(max_component(a), 1e-3f);
+    out.choice[i] = out.weights[i] * (is_fixed(i) ? 1 : std::max(max_component(a), 1e-3f));
+    (is_fixed(i) ? fixed : sum) += out.choice[i];
   }
-  for (int i = 0; i < out.count; ++i) out.choice[i] *= out.opacity / sum;
+  const float all = sum > 0 ? 1 : out.opacity / fixed;  // nothing else
+  for (int i = 0; i < out.count; ++i) out.choice[i] *= is_fixed(i) ? all : std::max(out.opacity - fixed, 0.0f) / sum;
   out.chooses = true;
   // Not by the albedo of the rest, which may be another material behind: the passage is the same both ways.
   out.pass = 1 - out.opacity;
@@ -305,7 +313,7 @@ void resolve(const Scene& scene, const Surface& surface, const Vec3& wo, Frame& 
   out.choice[0] = 1;
   out.opacity = std::max(out.opacity, 0.0f);
   if (shape.mask != none && out.opacity < 1) close_holes(out);
-  if (out.count != 1 || out.opacity < 1) choose(out);
+  if (out.count != 1 || out.opacity < 1) choose(out, r.two_faced);
 }
 
 }  // namespace ajar

@@ -96,6 +96,36 @@ TEST(Resolve, BentPartsAddUp) {
   EXPECT_GT(seen, 1000);
 }
 
+// Beside what differs from side to side, the way through is as likely as the way back says.
+TEST(Resolve, TheWayThroughIsAsLikelyFromBothSides) {
+  Material blend = parent(MaterialKind::blend, {1, 2});
+  blend.weight = Slot(0.3f);
+  Sampler sampler = make_sampler(SamplerKind::independent, 9, Side::camera, 0, 0);
+  for (const Material& through :
+       {microfacet(MaterialKind::roughdielectric, Microfacet::ggx, 0.3f, 0.3f), material(MaterialKind::difftrans)})
+    for (const float front : {0.0f, 0.02f, 0.95f}) {
+      const std::vector<Material> all{blend, through, parent(MaterialKind::twosided, {3, 4}), grey(front), grey(0.95f)};
+      int seen = 0;
+      for (int i = 0; i < 2000; ++i) {
+        const Vec3 wo = random_direction(sampler);
+        const Resolved here = resolved(all, wo);
+        const Vec2 u = sampler.next2();
+        BsdfSample s;
+        const Vec3 o = here.surface.frame.to_local(wo);
+        if (!sample(here.bsdf, o, sampler.next1(), u, Mode::radiance, s)) continue;
+        const Vec3 wi = here.surface.frame.to_world(s.wi);
+        if (wi.z * wo.z > 0) continue;
+        const Resolved there = resolved(all, wi);
+        const Frame& f = there.surface.frame;
+        const BsdfEval back = eval(there.bsdf, f.to_local(wi), f.to_local(wo), Mode::importance);
+        ASSERT_NEAR(back.pdf, s.pdf_reverse, 0.02f * back.pdf + 1e-5f) << front;
+        ASSERT_NEAR(back.pdf_reverse, s.pdf, 0.02f * s.pdf + 1e-5f) << front;
+        ++seen;
+      }
+      EXPECT_GT(seen, 400);
+    }
+}
+
 // A mirror with a normal of its own: the direction, and the weight of importance by Veach's adjoint.
 TEST(Resolve, BentMirror) {
   Material mix = parent(MaterialKind::mixture, {1, 3});
