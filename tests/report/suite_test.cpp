@@ -240,6 +240,7 @@ TEST_F(SuiteFile, KeysThatDoNothingAreErrors) {
   expect({{"integrator", "photon"}, {"merge_radius", 0}}, "merge_radius: is 0; photon needs");
   expect({{"integrator", "vcm"}, {"final_gather", 4}}, "final_gather: vcm has no photon map to gather from");
   expect({{"integrator", "photon"}, {"final_gather", 4}}, "");
+  expect({{"integrator", "light"}, {"limit_fireflies", true}}, "");
   const Json part = {{"integrator", "bdpt"}, {"spp", 64}, {"final_gather", 4}};
   expect_error("/scenes/0/reference/made_by", Json::array({part, {{"integrator", "path"}, {"spp", 64}}}),
                "made_by[0].final_gather: bdpt has no photon map");
@@ -274,7 +275,10 @@ TEST(SuiteOptions, ThoseThatDifferFromTheirDefaults) {
   EXPECT_EQ(options_json(options, false).dump(), R"({"integrator":"path"})");
   options.sampler = SamplerKind::independent;
   EXPECT_EQ(options_json(options, false).dump(), R"({"integrator":"path","sampler":"independent"})");
-  EXPECT_EQ(options_json(options).size(), 14u);
+  options.limit_fireflies = true;
+  EXPECT_EQ(options_json(options, false).dump(),
+            R"({"integrator":"path","sampler":"independent","limit_fireflies":true})");
+  EXPECT_EQ(options_json(options).size(), 15u);
 }
 
 }  // namespace
