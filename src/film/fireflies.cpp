@@ -11,6 +11,7 @@ namespace {
 using Bright = Film::Bright;
 constexpr int kept = Film::brightest_kept;
 constexpr int reach = 2;
+constexpr float slack = 2;  // how much brighter a pass may be than what others saw
 
 // The brightest passes so far, each by the brightest that it brought some pixel.
 struct Passes {
@@ -40,7 +41,7 @@ float limit_at(const Film& film, int x, int y) {
       const Bright* of = &film.brightest[kept * (size_t(py) * film.width + px)];
       for (int k = 0; k < kept; ++k) passes.add(luminance(of[k].value), of[k].pass);
     }
-  return firefly_slack * passes.best.back().luminance;
+  return slack * passes.best.back().luminance;
 }
 
 }  // namespace

@@ -204,9 +204,9 @@ void place_vpls(const Job& job, uint32_t pass, std::vector<Scratch>& scratches, 
   put_in_order(*job.scene, vpls.store);
   std::vector<float> near;
   for (const LightStore::Place& at : vpls.store.places) {
-    const double density = most_density(job, vpls.store.vertex(at));
-    near.push_back(at.only_joined ? 0
-                                  : float(inv_pi / std::max(density, 1e-30)));  // no walk shares what is only joined
+    // No walk shares what is only joined.
+    const auto per_light = [&] { return inv_pi / std::max(most_density(job, vpls.store.vertex(at)), 1e-30); };
+    near.push_back(at.only_joined ? 0 : float(per_light()));
   }
   finish(vpls.store, near);
 }

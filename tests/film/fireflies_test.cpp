@@ -107,7 +107,7 @@ TEST(Fireflies, OneSparkIsTakenBackToTwiceWhatIsAround) {
   EXPECT_FLOAT_EQ(channel(develop(film), 3, 3), 13 / 11.0f) << "the pass at work is limited as well";
 }
 
-// However heavy the tail, what is taken away is at most four passes of all: with a mean, it is nothing in the end.
+// However heavy the tail, what is taken away is of three passes at most: with a mean, it is nothing in the end.
 TEST(Fireflies, LimitsFadeAsPassesGoOn) {
   const auto error = [](int passes) {
     Film film = film_of(16, 16);

@@ -4,6 +4,7 @@
 
 #include "ajar/core/error.h"
 #include "bytes.h"
+#include "kit/files.h"
 
 namespace ajar {
 namespace {
@@ -173,13 +174,8 @@ TEST(Determinism, DamagedOrForeignCheckpointsAreErrors) {
   save_checkpoint(file.path, "key", rendered(scene, accel, o));
   const auto size = std::filesystem::file_size(file.path);
   RenderState state = start_render(scene, o);
-  const auto refusal = [&](const std::string& key) -> std::string {
-    try {
-      load_checkpoint(file.path, key, state);
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return {};
+  const auto refusal = [&](const std::string& key) {
+    return kit::error_of([&] { load_checkpoint(file.path, key, state); });
   };
   EXPECT_NE(refusal("other").find("other options"), std::string::npos) << refusal("other");
   constexpr std::streamoff key_at = 16;  // after magic and length

@@ -101,9 +101,8 @@ Scene with_envmap() {
 }
 
 // All light comes through the shade.
-Scene with_lampshade() {
-  Scene scene = open_stage();
-  add_sphere(scene, {-0.2f, 0.3f, 0}, 0.35f, add_material(scene, of_kind(MaterialKind::difftrans)));
+Scene with_lampshade(Scene scene, const Material& shade) {
+  add_sphere(scene, {-0.2f, 0.3f, 0}, 0.35f, add_material(scene, shade));
   add_area_light(scene, add_sphere(scene, {-0.2f, 0.3f, 0}, 0.1f, add_diffuse(scene, Rgb(0.5f))), Rgb(20));
   return finished(std::move(scene));
 }
@@ -116,9 +115,7 @@ Scene with_two_faced_shade() {
                   add_diffuse(scene, Rgb(0.5f)), none, none};
   blend.nested = {add_material(scene, of_kind(MaterialKind::difftrans)), add_material(scene, faces), none, none};
   blend.weight = Slot(0.3f);
-  add_sphere(scene, {-0.2f, 0.3f, 0}, 0.35f, add_material(scene, blend));
-  add_area_light(scene, add_sphere(scene, {-0.2f, 0.3f, 0}, 0.1f, add_diffuse(scene, Rgb(0.5f))), Rgb(20));
-  return finished(std::move(scene));
+  return with_lampshade(std::move(scene), blend);
 }
 
 // Lights of every kind at once, so that the choice among them counts.
@@ -350,7 +347,8 @@ const Feature all[] = {
     {"phong", [] { return with_sphere(of_kind(MaterialKind::phong)); }},
     {"rough_diffuse", [] { return with_sphere(of_kind(MaterialKind::roughdiffuse)); }},
     {"diffuse_transmitter", [] { return with_sphere(of_kind(MaterialKind::difftrans)); }},
-    {"lampshade", with_lampshade, "pbl", -1, Heuristic::power, 4},
+    {"lampshade", [] { return with_lampshade(open_stage(), of_kind(MaterialKind::difftrans)); }, "pbl", -1,
+     Heuristic::power, 4},
     {"two_faced_shade", with_two_faced_shade},
     {"ward",
      [] {

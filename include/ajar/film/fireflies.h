@@ -8,15 +8,12 @@
 
 namespace ajar {
 
-/// How much brighter a pass may be than what others saw. (docs/notation.md, F1)
-inline constexpr float firefly_slack = 2;
-
 /// From now on the film keeps what its limits need.
 void limit_fireflies(Film& film);
 /// Of a pixel that a pass brought this; passes in their order.
 void note(Film& film, size_t pixel, const Rgb& value);
-/// Per pixel, the luminance that a pass may bring it (F1): twice what at least Film::brightest_kept passes brought it
-/// or a pixel up to two away. Infinite before there are that many passes.
+/// Per pixel, the luminance that a pass may bring it (docs/notation.md, F1): twice what at least Film::brightest_kept
+/// passes brought it or a pixel up to two away. Infinite before there are that many passes.
 std::vector<float> limits(const Film& film);
 /// What the passes brought a pixel beyond its limit, all together.
 glm::dvec3 excess(const Film& film, size_t pixel, float limit);
