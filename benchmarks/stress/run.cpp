@@ -109,7 +109,7 @@ Verdict judge(const Case& c, const std::string& integrator, const Outcome& out, 
   const kit::Estimate image = kit::estimate(out.width, out.height, out.runs);
   const kit::Estimate right =
       c.answer > 0 ? flat(out.width, out.height, c.answer) : kit::estimate(ref.width, ref.height, ref.runs);
-  const double slack = is_merging(integrator) ? bias_of_merging : 1e-4;
+  const kit::Slack slack{.relative = is_merging(integrator) ? bias_of_merging : 1e-4};
   const kit::ZTest z = kit::z_test(image, right, level, 3, slack);
   const double n = double(image.mean.size());
   // All pixels see the same virtual lights: what a rare one brings moves all blocks together.

@@ -37,6 +37,14 @@ Sum sum_of(const std::vector<Work>& cut) {
   return s;
 }
 
+// Makes shares add up to one; even ones where none is known, as of a cell that no lamp shines at.
+void normalise(std::vector<Work>& cut) {
+  double total = 0;
+  for (const Work& w : cut) total += w.share;
+  const bool known = total > 0 && total < double(infinity);
+  for (Work& w : cut) w.share = known ? w.share / total : 1 / double(cut.size());
+}
+
 // The entries' new weights, and what becomes of their shares.
 void weigh(const LightRules& rules, std::vector<Work>& cut) {
   const Sum sum = sum_of(cut);
@@ -45,14 +53,12 @@ void weigh(const LightRules& rules, std::vector<Work>& cut) {
   double mean = 0;
   for (const Work& w : cut) mean += w.share * strength(w.e, all);
   const double mix = double(rules.mix) * sum.hits / (sum.hits + 8);
-  double total = 0;
   for (Work& w : cut) {
     const float weight = float(mix * strength(w.e, all) / std::max(mean, 1e-30) + (1 - mix));  // (V3)
     w.share *= double(weight / w.weight);
     w.weight = weight;
-    total += w.share;
   }
-  for (Work& w : cut) w.share /= total;
+  normalise(cut);
 }
 
 constexpr float least_tries = 32;  // of an entry that is divided
@@ -116,14 +122,12 @@ void append(std::vector<Work>& cut, const LightTree& tree, const LightRules& rul
   if (sum.tried > 0)
     c.asks = float(std::clamp(64 * (sum.hits + 1) / sum.tried, double(rules.least_asks), 1.0));  // (V4)
   c.plain = plain;
-  double total = 0, before = 0;
-  for (Work& w : cut) {
-    const LightNode& n = tree.nodes[w.node];
-    if (rules.by_power) w.share = power_of(tree, n.first, n.last) * double(w.weight);
-    total += w.share;
-  }
+  if (rules.by_power)
+    for (Work& w : cut) w.share = power_of(tree, tree.nodes[w.node].first, tree.nodes[w.node].last) * double(w.weight);
+  normalise(cut);
+  double before = 0;
   for (const Work& w : cut) {
-    to.entries.push_back({w.node, tree.nodes[w.node].first, w.weight, float(std::min(before / total, 1 - 0x1p-24))});
+    to.entries.push_back({w.node, tree.nodes[w.node].first, w.weight, float(std::min(before, 1 - 0x1p-24))});
     to.evidence.push_back(w.e);
     before += w.share;
   }
@@ -134,7 +138,7 @@ void append(std::vector<Work>& cut, const LightTree& tree, const LightRules& rul
 // where they were not chosen by their weights (cell), what they would have been.
 void take(const LightTree& tree, const LearnedLights& v, const LightTallies& t, const LightCut& cut,
           const LightRules& rules, const Receiver* cell, std::vector<Work>& out) {
-  double tried = 0, sum = 0;
+  double tried = 0;
   for (uint32_t i = cut.first; i < cut.first + cut.count; ++i) tried += double(t.tried[i]);
   out.clear();
   for (uint32_t i = cut.first; i < cut.first + cut.count; ++i) {
@@ -147,9 +151,8 @@ void take(const LightTree& tree, const LearnedLights& v, const LightTallies& t, 
       if (!cell) w.share = (32 * w.share + double(t.tried[i])) / (32 + tried);
     }
     out.push_back(w);
-    sum += w.share;
   }
-  for (Work& w : out) w.share /= sum;
+  normalise(out);
 }
 
 }  // namespace

@@ -225,7 +225,7 @@ void teach(const Scene& scene, RenderState& state, const RenderOptions& options)
   const double wall = wall_seconds(), cpu = process_cpu_seconds();
   const uint32_t dropped = state.film.dropped;
   end_pass(scene, state.learning, learn_options(options), state.film);
-  if (state.film.dropped != dropped) state.pyramid = {}, state.stats.ledger = {};
+  if (state.film.dropped != dropped) state.pyramid.layers.clear(), state.stats.ledger = {};
   state.stats.learn_seconds += wall_seconds() - wall;
   state.stats.learn_cpu_seconds += process_cpu_seconds() - cpu;
 }

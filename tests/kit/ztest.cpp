@@ -113,8 +113,8 @@ double normal_of_student(double t, double nu) {
 }
 
 // A difference against its noise; equal numbers agree however sure they are.
-double deviate(const Pair& p, double variance, double nu, double slack) {
-  const double difference = p.a.value - p.b.value, allowed = slack * p.brightness();
+double deviate(const Pair& p, double variance, double nu, double allowed) {
+  const double difference = p.a.value - p.b.value;
   if (difference == 0) return 0;
   return normal_of_student(difference / std::sqrt(variance + allowed * allowed), std::max(nu, 1.0));
 }
@@ -140,7 +140,8 @@ struct Verdict {
   double chi = 0, lean = 0;
 };
 
-Verdict test_channel(const Estimate& ea, const Estimate& eb, const Grid& grid, int channel, double slack, ZTest& out) {
+Verdict test_channel(const Estimate& ea, const Estimate& eb, const Grid& grid, int channel, const Slack& slack,
+                     ZTest& out) {
   const Pooled a = pool(ea, grid, channel), b = pool(eb, grid, channel);
   std::vector<Pair> pairs(grid.size());
   double brightness = 0;
@@ -157,14 +158,16 @@ Verdict test_channel(const Estimate& ea, const Estimate& eb, const Grid& grid, i
       const Around n = around(pairs, grid, x, y);
       relative.push_back(1 / (n.mean.brightness() + 1e-2 * brightness + 1e-300));
       const double usual = n.brightness2 > 0 ? n.mean.variance() / n.brightness2 * p.brightness() * p.brightness() : 0;
-      const double z = deviate(p, std::max(p.variance(), usual), usual > p.variance() ? n.mean.dof() : p.dof(), slack);
+      const double allowed = slack.relative * p.brightness() + slack.faint * brightness;
+      const double z =
+          deviate(p, std::max(p.variance(), usual), usual > p.variance() ? n.mean.dof() : p.dof(), allowed);
       r.chi += z * z;
       if (std::abs(z) <= std::abs(out.worst_z)) continue;
       out.worst_z = z, out.worst_x = x * grid.block, out.worst_y = y * grid.block, out.worst_channel = channel;
     }
   for (const auto& weights : {plain, relative}) {
     const Pair sum{total(a, weights), total(b, weights)};
-    const double z = deviate(sum, sum.variance(), sum.dof(), slack);
+    const double z = deviate(sum, sum.variance(), sum.dof(), slack.relative * sum.brightness());
     if (std::abs(z) > std::abs(r.lean)) r.lean = z;
   }
   return r;
@@ -185,7 +188,7 @@ Estimate estimate(int width, int height, std::vector<std::vector<double>> runs) 
   return e;
 }
 
-ZTest z_test(const Estimate& a, const Estimate& b, double level, int block, double slack) {
+ZTest z_test(const Estimate& a, const Estimate& b, double level, int block, const Slack& slack) {
   ZTest r;
   if (!valid(a) || !valid(b) || a.width != b.width || a.height != b.height) {
     r.p = r.p_max = r.p_chi = r.p_mean = 0;

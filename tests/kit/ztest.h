@@ -21,6 +21,12 @@ struct Estimate {
 /// The estimate of some independent renderings (different seeds) of one image; at least two, better eight or more.
 Estimate estimate(int width, int height, std::vector<std::vector<double>> runs);
 
+/// Deviations that are expected besides noise: rounding, a bias that one of them may have.
+struct Slack {
+  double relative = 1e-4;  ///< to the brightness at hand
+  double faint = 0;        ///< of a block, relative to the image's: what both hardly see, and one as good as never
+};
+
 struct ZTest {
   double p = 1;  ///< of the whole: the smallest of the three below, corrected for being one of three
   double p_max = 1, p_chi = 1, p_mean = 1;
@@ -36,8 +42,7 @@ struct ZTest {
 /// (chi-square), do all lean to one side (z of the mean, plain and relative to the brightness around). Built for
 /// long-tailed noise: a z counts by Student's distribution with the degrees of freedom that its variance really has,
 /// and no block is believed to be much quieter, relative to its brightness, than its neighbourhood (it may only have
-/// missed the rare sample). slack: a deviation, relative to the brightness, that is expected besides noise: rounding,
-/// or the bias that one of them may have. Non-finite values and unequal sizes fail.
-ZTest z_test(const Estimate& a, const Estimate& b, double level = 1e-4, int block = 4, double slack = 1e-4);
+/// missed the rare sample). Non-finite values and unequal sizes fail.
+ZTest z_test(const Estimate& a, const Estimate& b, double level = 1e-4, int block = 4, const Slack& slack = {});
 
 }  // namespace ajar::kit

@@ -68,6 +68,28 @@ TEST(LearnedLights, ChoiceAddsUpAndDrawsWhatItSays) {
   }
 }
 
+// Where no light faces a cell that leaves the choice to the tree, its shares are even, and numbers all the same.
+TEST(LearnedLights, ACellThatNothingShinesAtHasShares) {
+  Scene scene = under_sky(LightKind::directional);
+  add_light(scene, LightKind::directional, Rgb(1));
+  for (Light& light : scene.lights) light.direction = {0, -1, 0};
+  finish(scene);
+  ASSERT_FALSE(scene.light_tree.sky.empty());
+  const Receiver below{Vec3(0), {0, -1, 0}};
+  ASSERT_EQ(importance(scene.light_tree, 0, below), 0);
+  LearnedLights v;
+  add_cut(v, none);
+  for (int lesson = 0; lesson < 2; ++lesson) {
+    LightTallies t = start_tallies(v);
+    for (int i = 0; i < 200; ++i) record(v, t, 0, 1);
+    v.cuts[0].plain = 1;
+    v = learn_lights(scene.light_tree, v, t, {}, {&below, 1});
+  }
+  ASSERT_EQ(v.cuts[0].count, 2u);
+  EXPECT_EQ(share_of(v, v.cuts[0], 0), 0.5f);
+  EXPECT_EQ(share_of(v, v.cuts[0], 1), 0.5f);
+}
+
 // Cells in one half give the lamps of the other half less than the tree would.
 TEST(LearnedLights, LampsBehindAWallAreRare) {
   const Lit t(divided_room(), 8, 8000);

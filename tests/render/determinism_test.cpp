@@ -144,7 +144,7 @@ TEST(Determinism, GuidedCheckpointsAreTheStraightRun) {
   const Scene scene = strip(true);
   const Accel accel(scene);
   RenderOptions o = options_of("guided-bdpt", 14);
-  o.limit_fireflies = true;
+  o.limit_fireflies = o.techniques = true;
   const RenderState straight = rendered(scene, accel, o);
   EXPECT_EQ(straight.film.dropped, blind_generations);
   EXPECT_EQ(straight.learning.fields.generation, young_generations + 1) << "learned once since";
