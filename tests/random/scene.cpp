@@ -155,6 +155,14 @@ std::string object(Making& m) {
   return shape(d, at, size, material(d, m.kinds.deltas), any_shape(d));
 }
 
+// One that $shift moves.
+std::string mover(Making& m) {
+  const Place at{m.dice.between(-0.6, 0.4), m.dice.between(-0.7, 0.5), m.dice.between(-0.6, 0.2)};
+  return element("shape", "cube",
+                 {to_world({scaled(0.15, 0.3, 0.1), turned(m.dice), moved(at), R"(<translate x="$shift"/>)"}),
+                  material(m.dice, m.kinds.deltas)});
+}
+
 std::string instances(Making& m) {
   Dice& d = m.dice;
   d.note("instances");
@@ -212,12 +220,14 @@ RandomScene random_scene(uint64_t seed) {
   const int family = d.below(4);  // half of them hold what all integrators see
   m.kinds = {.point_lights = family > 1, .deltas = family != 2};
   m.room = d.any({Room::open, Room::open, Room::closed, Room::closed, Room::divided, Room::floor});
-  std::string xml = fmt::format("<integrator type=\"path\"><integer name=\"max_depth\" value=\"{}\"/></integrator>\n",
-                                d.any({2, 3, 4, 5, 8, -1, -1}));
+  std::string xml = R"(<default name="shift" value="0"/>)";
+  xml += fmt::format("<integrator type=\"path\"><integer name=\"max_depth\" value=\"{}\"/></integrator>\n",
+                     d.any({2, 3, 4, 5, 8, -1, -1}));
   xml += joined({sensor(m), walls(m)});
   for (int i = d.any({1, 1, 1, 2, 2, 3}); i > 0; --i) xml += light(m);
   for (int i = d.any({1, 2, 2, 3}); i > 0; --i) xml += object(m);
   if (d.chance(0.15)) xml += instances(m);
+  xml += mover(m);
   return {"<scene version=\"3.0.0\">\n" + xml + "</scene>\n", d.noted(), m.kinds};
 }
 
