@@ -36,10 +36,21 @@ class Agreement : public testing::TestWithParam<uint64_t> {
   static void SetUpTestSuite() { props = std::make_unique<Props>(); }
   static void TearDownTestSuite() { props.reset(); }
 
-  static std::string folder() { return props->folder.string(); }
-
   const RandomScene made = random::random_scene(GetParam());
-  const Scene scene = load_scene_text(made.xml, folder(), "random.xml");
+  const LightChoice choice =
+      Dice(GetParam() + 3000000)
+          .any({LightChoice::tree, LightChoice::tree, LightChoice::tree, LightChoice::uniform, LightChoice::power});
+  const Scene scene = at("0");
+
+  /// Of the place where $shift puts what moves.
+  Scene at(const char* shift) const {
+    Scene loaded = load_scene_text(made.xml, props->folder.string(), "random.xml", {.defines = {{"shift", shift}}});
+    set_light_choice(loaded, choice);
+    return loaded;
+  }
+  /// Options of an integrator, and what they are.
+  RenderOptions drawn(Dice& dice, const std::string& integrator) const;
+  std::string told(const RenderOptions& o) const;
 
  private:
   static inline std::unique_ptr<Props> props;
@@ -52,22 +63,25 @@ std::vector<std::string> able(const random::Kinds& kinds) {
   return out;
 }
 
-RenderOptions drawn(Dice& dice, const std::string& integrator, int max_depth) {
-  RenderOptions o = statistical(integrator, max_depth);
+RenderOptions Agreement::drawn(Dice& dice, const std::string& integrator) const {
+  RenderOptions o = statistical(integrator, scene.hints.max_depth);
   o.heuristic = dice.any({Heuristic::power, Heuristic::power, Heuristic::balance});
   o.roulette_depth = dice.any({5, 5, 2, 20});
   o.learn.structure = dice.any({Structure::adaptive, Structure::adaptive, Structure::grid, Structure::probes});
   o.learn.rule = dice.any({Rule::expected, Rule::expected, Rule::returned});
   o.learn.guided = dice.any({Guided::both, Guided::both, Guided::camera, Guided::light});
   o.learn.train = dice.any({0u, 0u, 0u, 4u});
-  o.learn_lights = (integrator == "path" || integrator == "bdpt") && dice.chance(0.3);
+  o.learn.lights = choice == LightChoice::tree && dice.chance(0.8);
+  o.learn_lights = (integrator == "path" || integrator == "bdpt") && choice == LightChoice::tree && dice.chance(0.3);
+  if (integrator.ends_with("path") && !made.kinds.point_lights) o.next_event = dice.chance(0.8);
   return o;
 }
 
-std::string told(const RenderOptions& o) {
-  return fmt::format("{} (heuristic {}, roulette {}, structure {}, rule {}, guided {}, train {}, lights {})",
-                     o.integrator, int(o.heuristic), o.roulette_depth, int(o.learn.structure), int(o.learn.rule),
-                     int(o.learn.guided), o.learn.train, o.learn_lights);
+std::string Agreement::told(const RenderOptions& o) const {
+  return fmt::format(
+      "{} (heuristic {}, roulette {}, structure {}, rule {}, guided {}, train {}, lights {} {} {}, next event {})",
+      o.integrator, int(o.heuristic), o.roulette_depth, int(o.learn.structure), int(o.learn.rule), int(o.learn.guided),
+      o.learn.train, light_choice_names[int(choice)], o.learn.lights, o.learn_lights, o.next_event);
 }
 
 // A difference that a quick look suspects has to be there in a longer one, of other numbers, too.
@@ -93,7 +107,7 @@ TEST_P(Agreement, InEveryBlock) {
     return e;
   };
   for (const std::string& integrator : able(made.kinds)) {
-    const RenderOptions o = drawn(dice, integrator, scene.hints.max_depth);
+    const RenderOptions o = drawn(dice, integrator);
     const uint32_t passes = integrator == "path" || integrator == "light" ? 60 : 20;
     const Look look = [&](uint32_t effort, uint64_t seed) {
       return measure(scene, o, {.batches = 12, .passes = passes * effort, .seed = seed});
@@ -108,7 +122,7 @@ TEST_P(Agreement, StopsAndThreadsDoNotMatter) {
   const Accel accel(scene);
   Dice dice(GetParam() + 1000000);
   const std::vector<std::string> names = tried_integrators();
-  RenderOptions o = drawn(dice, names[size_t(dice.below(int(names.size())))], scene.hints.max_depth);
+  RenderOptions o = drawn(dice, names[size_t(dice.below(int(names.size())))]);
   o.sampler = SamplerKind::sobol;
   o.spp = 5;
   o.techniques = has_strategies(o.integrator) && dice.chance(0.5);
@@ -155,10 +169,9 @@ Picture third_frame(const std::vector<Scene>& frames, const RenderOptions& optio
 
 TEST_P(Agreement, FramesOfAnAnimation) {
   std::vector<Scene> frames;
-  for (const char* shift : {"0", "0.1", "0.2"})
-    frames.push_back(load_scene_text(made.xml, folder(), "random.xml", {.defines = {{"shift", shift}}}));
+  for (const char* shift : {"0", "0.1", "0.2"}) frames.push_back(at(shift));
   Dice dice(GetParam() + 2000000);
-  RenderOptions o = drawn(dice, dice.any({"guided-bdpt", "guided-bdpt", "vpl"}), scene.hints.max_depth);
+  RenderOptions o = drawn(dice, dice.any({"guided-bdpt", "guided-bdpt", "vpl"}));
   o.learn.train = 0;
   o.spp = 8;
   o.threads = 1;
