@@ -31,7 +31,9 @@ std::string if_guided(const RenderOptions& o) {
                      o.integrator);
 }
 std::string if_it_leaves_out(const RenderOptions& o) {
-  return is_guided(o.integrator) ? "" : fmt::format("{} leaves nothing out; leave it out", o.integrator);
+  RenderOptions usual;
+  usual.integrator = o.integrator, usual.leaves_out = true;
+  return may_leave_out(usual) ? "" : fmt::format("{} leaves nothing out; leave it out", o.integrator);
 }
 std::string if_it_guides(const RenderOptions& o) {
   if (o.integrator == "guided-path" && o.learn.guided == Guided::light)

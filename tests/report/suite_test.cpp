@@ -225,7 +225,8 @@ TEST_F(SuiteFile, KeysThatDoNothingAreErrors) {
     expect({{"integrator", "guided-vcm"}, {key, value}}, "");
   }
   expect({{"integrator", "path"}, {"field_memory", 1 << 20}, {"light_choice", "learned"}}, "");
-  expect({{"integrator", "path"}, {"plan", "all"}}, "plan: path leaves nothing out");
+  for (const std::string name : {"path", "vpl"})
+    expect({{"integrator", name}, {"plan", "all"}}, "plan: " + name + " leaves nothing out");
   expect({{"integrator", "guided-path"}, {"guide", "light"}}, "guide: guided-path has no light subpaths");
   expect({{"integrator", "vpl"}, {"guide", "camera"}}, "guide: vpl guides light subpaths alone");
   expect({{"integrator", "vpl"}, {"guide", "both"}}, "");
