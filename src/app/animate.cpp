@@ -87,6 +87,7 @@ std::string frame_key(const Work& w, int frame, const Scene& scene) {
   const int width = scene.camera.crop_width, height = scene.camera.crop_height;
   if (o.max_depth != w.options.max_depth) key += fmt::format(",depth {}", o.max_depth);
   if (width != w.width || height != w.height) key += fmt::format(",{}x{}", width, height);
+  if (w.arguments.half) key += ",half";
   return key;
 }
 
@@ -253,7 +254,7 @@ void write_film(const Work& w) {
 void write_figures(const Work& w) {
   std::optional<FramePattern> reference;
   if (!w.arguments.reference.empty()) reference = parse_pattern("--reference", w.arguments.reference);
-  const std::vector<FrameFigures> figures = measure(w.pattern, w.shooting.timeline, reference);
+  const std::vector<FrameFigures> figures = measure(w.pattern, w.shooting.timeline, reference, w.options_key);
   const std::string stem = w.folder + "/animation";
   write_text(stem + ".json", sequence_json(figures));
   write_text(stem + ".csv", sequence_csv(figures));
@@ -287,9 +288,11 @@ Work prepare(const AnimateArguments& a) {
   w.sequence = sequence_options(a);
   w.carries = w.sequence.coherence.fields && is_guided(w.options.integrator);
   w.options_key = animation_key(w, *zero);
-  // What all frames have by the user's word each may have otherwise by the scene's.
-  w.key = fmt::format("{},{}{}{}", w.options_key, files_key(*zero), a.max_depth == not_given ? "" : ",one depth",
-                      a.size.empty() ? "" : ",one size");
+  // What all frames have by the user's word each may have otherwise by the scene's. Lessons that time cut short are
+  // others than whole ones.
+  const bool in_time = w.options.seconds > 0 || w.options.cpu_seconds > 0;
+  w.key = fmt::format("{},{}{}{}{}", w.options_key, files_key(*zero), a.max_depth == not_given ? "" : ",one depth",
+                      a.size.empty() ? "" : ",one size", in_time ? ",in time" : "");
   check_references(a, w.shooting);
   const fs::path folder = fs::path(frame_name(w.pattern, 0)).parent_path();
   w.folder = folder.empty() ? "." : folder.string();

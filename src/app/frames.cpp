@@ -31,6 +31,19 @@ double number_or(const Metadata& metadata, const std::string& name, double other
   return std::get<double>(found->second);
 }
 
+// Whether an image that is there is a frame of the animation; of a damaged one its reader tells.
+bool is_of(const std::string& path, const std::string& key) {
+  if (key.empty()) return true;
+  try {
+    const Metadata metadata = read_metadata(path);
+    const auto found = metadata.find("ajar:frame");
+    const auto* frame = found == metadata.end() ? nullptr : std::get_if<std::string>(&found->second);
+    return frame && frame->starts_with(key + ",");
+  } catch (const Error&) {
+    return true;
+  }
+}
+
 FrameFigures measure_frame(const std::string& path, const Picture& image, const Timeline& timeline, int frame) {
   FrameFigures f;
   f.frame = frame;
@@ -87,7 +100,7 @@ std::string describe(const Timeline& timeline, int frame) {
   const std::map<std::string, std::string> all = parameters_at(timeline, frame);
   for (const auto& [name, track] : timeline.tracks)
     out += fmt::format("{}{}={}", out.empty() ? "" : " ", name, all.at(name));
-  if (const auto time = time_at(timeline, frame)) out += fmt::format("{}time={:.4g}", out.empty() ? "" : " ", *time);
+  if (const auto time = time_at(timeline, frame)) out += fmt::format("{}time={:.9g}", out.empty() ? "" : " ", *time);
   return out;
 }
 
@@ -162,13 +175,13 @@ std::optional<Carried> find_carried(const std::string& folder, const std::string
 }
 
 std::vector<FrameFigures> measure(const FramePattern& pattern, const Timeline& timeline,
-                                  const std::optional<FramePattern>& reference) {
+                                  const std::optional<FramePattern>& reference, const std::string& key) {
   std::vector<FrameFigures> out;
   Picture before, reference_before;
   for (int f = 0; f < timeline.frames.count; ++f) {
     const std::string path = frame_name(pattern, f);
     const Picture last = std::exchange(before, {}), last_truth = std::exchange(reference_before, {});
-    if (!fs::exists(path)) continue;
+    if (!fs::exists(path) || !is_of(path, key)) continue;
     Picture image = read_frame(path);
     out.push_back(measure_frame(path, image, timeline, f));
     const std::string name = reference ? frame_name(*reference, f) : "";

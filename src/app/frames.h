@@ -59,9 +59,9 @@ Picture read_frame(const std::string& path);
 std::optional<Carried> find_carried(const std::string& folder, const std::string& key, int last);
 
 /// The figures of all frames of the animation that are there. reference: empty for none; of what is missing there no
-/// error is known.
+/// error is known. key: with which the names of its frames begin, in their files; empty: whatever is there counts.
 std::vector<FrameFigures> measure(const FramePattern& pattern, const Timeline& timeline,
-                                  const std::optional<FramePattern>& reference);
+                                  const std::optional<FramePattern>& reference, const std::string& key = {});
 
 /// Throws Error where the name is none for a film, or cannot be written, or ffmpeg is not installed.
 void check_video(const std::string& out);

@@ -117,6 +117,7 @@ void load_checkpoint(const std::string& path, const std::string& key, RenderStat
     throw Error(fmt::format("{}: made with another scene or other options: {}; give what it was made with, or {}", path,
                             difference(stored, key), checkpoint_kind.cure));
   const size_t pixels = state.film.pixels();
+  const bool learns = !state.learning.fields.table.slots.empty();
   film_fields(r, state.film);
   r.require(is_sound(state.film, pixels));
   stats_fields(r, state.stats);
@@ -140,6 +141,7 @@ void load_checkpoint(const std::string& path, const std::string& key, RenderStat
   r.require(state.plain.guided.passes == 0 || is_sound(state.plain.guided, pixels));
   read(r, state.learning);
   r.finish();
+  if (!learns) state.learning = {};
 }
 
 }  // namespace ajar

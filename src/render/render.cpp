@@ -199,6 +199,11 @@ void note_rejected(RenderStats& stats, const std::vector<uint64_t>& pixels, cons
     }
 }
 
+// What was traced does not count: it is in no image, or was counted before.
+void forget_counts(std::vector<Scratch>& scratches) {
+  for (Scratch& s : scratches) s.counters = {}, s.rejected = 0;
+}
+
 // The job of a pass that joins virtual point lights, which it places.
 Job with_vpls(Job job, const Film& film, std::vector<Scratch>& scratches, Vpls& vpls) {
   job.vpls = &vpls;
@@ -210,12 +215,11 @@ Job with_vpls(Job job, const Film& film, std::vector<Scratch>& scratches, Vpls& 
   const uint32_t pass = film.dropped + film.passes;
   if (vpls.pass == Vpls{}.pass && job.guided) {
     measure_lights(job, scratches, vpls);
-    for (Scratch& s : scratches) s.counters = {};
+    forget_counts(scratches);
   }
   if (vpls.pass != pass) {
     place_vpls(job, pass, scratches, vpls);
-    if (film.chunks > 0)  // a pass that is gone on with: they were counted when it began
-      for (Scratch& s : scratches) s.counters = {};
+    if (film.chunks > 0) forget_counts(scratches);  // a pass that is gone on with
   }
   vpls.pass = pass;
   return job;

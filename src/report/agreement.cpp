@@ -32,9 +32,9 @@ double mean_of(const Picture& image, const Block& b, int channel) {
 template <class Value>
 Estimate estimate(const Batches& batches, const Value& value) {
   double weight = 0, sum = 0, squares = 0;
-  for (const Batch& batch : batches) weight += batch.spp, sum += batch.spp * value(batch);
+  for (const ReferenceBatch& batch : batches) weight += batch.spp, sum += batch.spp * value(batch);
   const double mean = sum / weight;
-  for (const Batch& batch : batches) squares += batch.spp * (value(batch) - mean) * (value(batch) - mean);
+  for (const ReferenceBatch& batch : batches) squares += batch.spp * (value(batch) - mean) * (value(batch) - mean);
   return {mean, squares / (weight * double(batches.size() - 1))};
 }
 
@@ -46,7 +46,7 @@ std::vector<Estimate> estimate_level(const Batches& batches, int level, int chan
   std::vector<Estimate> estimates;
   for (int i = 0; i < level * level; ++i) {
     const Block block = block_of(batches[0].image, level, i);
-    Estimate e = estimate(batches, [&](const Batch& b) { return mean_of(b.image, block, channel); });
+    Estimate e = estimate(batches, [&](const ReferenceBatch& b) { return mean_of(b.image, block, channel); });
     if (level > 1) {
       const Estimate& parent = parents[size_t(i / level / 2 * (level / 2) + i % level / 2)];
       e.variance = std::max(e.variance, 4 * parent.variance);
@@ -76,7 +76,8 @@ double relative_error(const Batches& batches, const Picture& reference) {
   double sum = 0;
   for (size_t i = 0; i < reference.pixels.size(); ++i) {
     const double r = reference.pixels[i];
-    sum += estimate(batches, [&](const Batch& b) { return double(b.image.pixels[i]); }).variance / (r * r + 0.01);
+    sum +=
+        estimate(batches, [&](const ReferenceBatch& b) { return double(b.image.pixels[i]); }).variance / (r * r + 0.01);
   }
   return sum / double(reference.pixels.size());
 }
@@ -84,7 +85,7 @@ double relative_error(const Batches& batches, const Picture& reference) {
 Picture mean_image(const Batches& batches) {
   Picture mean = batches[0].image;
   for (size_t i = 0; i < mean.pixels.size(); ++i)
-    mean.pixels[i] = float(estimate(batches, [&](const Batch& b) { return double(b.image.pixels[i]); }).mean);
+    mean.pixels[i] = float(estimate(batches, [&](const ReferenceBatch& b) { return double(b.image.pixels[i]); }).mean);
   return mean;
 }
 

@@ -10,11 +10,11 @@
 namespace ajar {
 
 /// An image with channels R, G, B, and how many samples per pixel it is worth.
-struct Batch {
+struct ReferenceBatch {
   Picture image;
   double spp = 0;
 };
-using Batches = std::vector<Batch>;
+using Batches = std::vector<ReferenceBatch>;
 
 /// A mean of batches and the variance of that mean, from their spread.
 struct Estimate {

@@ -61,7 +61,7 @@ struct Part {
   Batches batches;
   double seconds = 0, cpu_seconds = 0, spp = 0;
 
-  void add(Batch batch, const Metadata& data) {
+  void add(ReferenceBatch batch, const Metadata& data) {
     spp += batch.spp;
     seconds += std::get<double>(data.at("ajar:seconds"));
     cpu_seconds += std::get<double>(data.at("ajar:cpu_seconds"));
@@ -86,7 +86,7 @@ bool render_batch(const LoadedScene& loaded, const RenderOptions& options, const
   bool stopped = false;
   render(*loaded.scene, *loaded.accel, options, state, [&](const RenderState& s) { return !(stopped = !go_on(s)); });
   if (stopped) return false;
-  const Batch batch{develop(state.film), spp_of(state.film)};
+  const ReferenceBatch batch{develop(state.film), spp_of(state.film)};
   const Metadata data = {{"ajar:key", key},
                          {"ajar:spp", batch.spp},
                          {"ajar:seconds", state.stats.seconds},

@@ -131,6 +131,15 @@ TEST_F(Animate, FinishedFramesAreNotRenderedAgain) {
   EXPECT_EQ(pixels("out/f_02.exr"), last);
   EXPECT_SAYS(error_of([&] { run("3", "out", {"--seed", "7"}); }), "other options; remove it");
   EXPECT_SAYS(error_of([&] { run("4", "out"); }), "of another animation");
+  EXPECT_SAYS(error_of([&] { run("3", "out", {"--half"}); }), "f_00.exr: was made otherwise");
+}
+
+// What time cut short teaches no frame whose samples are counted.
+TEST_F(Animate, LessonsInTimeAreNotGoneOnWithoutIt) {
+  run("0-1/3", "parts", {"--cpu-time", "0.0001"});
+  run("2/3", "parts");
+  run("2/3", "alone");
+  EXPECT_EQ(pixels("parts/f_02.exr"), pixels("alone/f_02.exr"));
 }
 
 // Frames of two scenes never stand in one film: neither of the scene's own file nor of one that it names.
@@ -214,6 +223,16 @@ TEST_F(Animate, MeasuresErrorAndFlicker) {
   EXPECT_SAYS(error_of([&] { run("4", "more", {"--reference", in("reference/f_%02d.exr")}); }), "there is no");
 }
 
+TEST_F(Animate, FiguresAreOfNoOtherAnimation) {
+  run("0/4", "out", {"--integrator", "path", "--seed", "7"});
+  run("1/4", "out", {"--integrator", "path"});
+  run("3/4", "out", {"--integrator", "path"});
+  const auto j = figures("out");
+  ASSERT_EQ(j["frames"].size(), 2u);
+  EXPECT_EQ(j["frames"][0]["frame"], 1);
+  EXPECT_EQ(j["frames_done"], 2);
+}
+
 // Sizes may change from frame to frame; flicker is not of such frames, and the file that differs is named.
 TEST_F(Animate, FlickerIsOfFramesOfOneSize) {
   run("1", "out", {"--integrator", "path", "--size", "8x8"});
@@ -290,6 +309,7 @@ TEST_F(Animate, ScenesMoveByThemselves) {
   EXPECT_NE(pixels("all_0.exr"), pixels("all_1.exr"));
   EXPECT_EQ(pixels("all_1.exr"), pixels("part/p_0.exr"));
   EXPECT_EQ(pixels("all_2.exr"), pixels("part/p_2.exr"));
+  EXPECT_SAYS(error_of([&] { animate("part/p", {"--at", "2..3.0001"}); }), "p_0.exr: is of another animation");
 }
 
 TEST_F(Animate, SaysWhatIsWrong) {

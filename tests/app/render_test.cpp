@@ -101,6 +101,13 @@ TEST_F(Render, AccountIsRecorded) {
   EXPECT_EQ(logged["phases_cpu"]["rebuild"], 0);
 }
 
+TEST_F(Render, WhatGoesOnWithoutLearningTellsOfNoFields) {
+  run({"--spp", "2", "--checkpoint", state});
+  EXPECT_FALSE(run({"--spp", "4", "--resume", state}).contains("fields"));
+  run({"--integrator", "guided-path", "--spp", "2", "--checkpoint", state});
+  EXPECT_TRUE(run({"--integrator", "guided-path", "--spp", "4", "--resume", state}).contains("fields"));
+}
+
 // The other integrator gets a ninth of the time; what is expected of it scales with the time.
 TEST_F(Render, VersusTellsWhatAnotherLeaves) {
   EXPECT_FALSE(run({"--spp", "1"}).contains("versus"));

@@ -81,6 +81,20 @@ foreach(file ${code})
   endforeach()
 endforeach()
 
+# One name, one type: of two that share a name the linker keeps the functions of one, whatever the other looks like. What
+# begins a line is of namespace ajar; what a file has for itself stands in a namespace without a name.
+file(GLOB_RECURSE headers RELATIVE ${ROOT} ${ROOT}/include/ajar/*.h ${ROOT}/src/*.h ${ROOT}/tests/render/*.h)
+foreach(file ${headers})
+  file(STRINGS ${ROOT}/${file} lines REGEX "^(struct|class|enum class) [^;]*{")
+  foreach(line ${lines})
+    string(REGEX REPLACE "^(struct|class|enum class) (alignas\\([^)]*\\) )?([A-Za-z]+).*$" "\\3" type "${line}")
+    if(DEFINED type_${type} AND NOT type_${type} STREQUAL file)
+      breach("${file}: type ${type} is in ${type_${type}} too; name one of them otherwise")
+    endif()
+    set(type_${type} ${file})
+  endforeach()
+endforeach()
+
 file(GLOB_RECURSE all RELATIVE ${ROOT} ${ROOT}/include/*.h ${ROOT}/src/*.* ${ROOT}/tests/*.h ${ROOT}/tests/*.cpp
      ${ROOT}/benchmarks/*.* ${ROOT}/docs/*.md ${ROOT}/scenes/*.py ${ROOT}/scenes/*.xml ${ROOT}/*.md)
 foreach(file ${all})

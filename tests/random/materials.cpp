@@ -36,9 +36,10 @@ std::string roughness(Dice& dice, double a, double b) {
   return joined({distribution(dice), value(dice, "alpha_u", a, b), value(dice, "alpha_v", a, b)});
 }
 
+// Rough glass that all but has the index of what is around it scatters into lobes that only light subpaths find.
 std::string refraction(Dice& dice) {
   return joined(
-      {number("int_ior", dice.between(1.2, 1.8)), number("ext_ior", dice.chance(0.7) ? 1 : dice.between(1, 1.5))});
+      {number("int_ior", dice.between(1.3, 1.8)), number("ext_ior", dice.chance(0.7) ? 1 : dice.between(1, 1.15))});
 }
 
 std::string tint(Dice& dice, const char* name) { return dice.chance(0.3) ? colour(dice, name, 0.4, 1) : ""; }

@@ -19,7 +19,7 @@ Picture filled(const Scene& scene, const Rgb& value) {
 }
 
 void expect_everywhere(const Scene& scene, const std::string& integrator, int max_depth, const Rgb& value,
-                       const Plan& plan = {}) {
+                       const Repeats& plan = {}) {
   expect_same(measure(scene, statistical(integrator, max_depth), plan), exact(filled(scene, value)),
               integrator + " against the formula");
 }
@@ -167,7 +167,7 @@ TEST(Refraction, PowerOutOfGlass) {
   add_light(scene, LightKind::point, Rgb(11));
   finish(scene);
   const float once = fresnel_dielectric(1, 1.5f), irradiance = 11.0f / 4 * (1 - once);
-  const Plan plan{.batches = 16, .passes = 400};
+  const Repeats plan{.batches = 16, .passes = 400};
   for (const char* integrator : {"bdpt", "light"})
     expect_everywhere(scene, integrator, 3, Rgb(0.7f * irradiance * inv_pi), plan);
 }

@@ -50,7 +50,7 @@ double sum_of(const Picture& p) {
 class Size : public testing::TestWithParam<float> {};
 TEST_P(Size, DoesNotMatter) {
   for (const char* integrator : {"path", "bdpt", "guided-bdpt"}) {
-    const Plan plan{.batches = 16, .passes = 15};
+    const Repeats plan{.batches = 16, .passes = 15};
     const RenderOptions options = statistical(integrator);
     expect_same(measure(scaled(1), options, plan), measure(scaled(GetParam()), options, plan), integrator);
   }
@@ -59,7 +59,7 @@ INSTANTIATE_TEST_SUITE_P(Extreme, Size, testing::Values(1e-3f, 1e4f),
                          [](const auto& test) { return test.param < 1 ? "Thousandth" : "TenThousand"; });
 
 TEST(Extreme, FarFromTheOrigin) {
-  const Plan plan{.batches = 16, .passes = 30};
+  const Repeats plan{.batches = 16, .passes = 30};
   const RenderOptions options = statistical("bdpt");
   expect_same(measure(scaled(1), options, plan), measure(scaled(1, {300, -200, 500}), options, plan), "moved");
 }

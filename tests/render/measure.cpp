@@ -22,7 +22,7 @@ RenderState rendered(const Scene& scene, const Accel& accel, const RenderOptions
   return state;
 }
 
-kit::Estimate measure(const Scene& scene, const RenderOptions& options, const Plan& plan) {
+kit::Estimate measure(const Scene& scene, const RenderOptions& options, const Repeats& plan) {
   const Accel accel(scene);
   RenderOptions o = options;
   o.spp = plan.passes;
@@ -35,7 +35,8 @@ kit::Estimate measure(const Scene& scene, const RenderOptions& options, const Pl
   return kit::estimate(scene.camera.crop_width, scene.camera.crop_height, std::move(runs));
 }
 
-std::map<std::pair<int, int>, kit::Estimate> measure_techniques(const Scene& scene, RenderOptions o, const Plan& plan) {
+std::map<std::pair<int, int>, kit::Estimate> measure_techniques(const Scene& scene, RenderOptions o,
+                                                                const Repeats& plan) {
   const Accel accel(scene);
   o.spp = plan.passes;
   o.techniques = true;

@@ -9,7 +9,7 @@
 
 namespace ajar {
 
-struct Plan {
+struct Repeats {
   int batches = 16;      ///< independent renders; their spread is the variance
   uint32_t passes = 64;  ///< of each
   uint64_t seed = 1;     ///< of the first
@@ -20,10 +20,10 @@ struct Plan {
 RenderOptions statistical(const std::string& integrator, int max_depth = -1);
 /// Renders to the end; fails the test when a value was rejected.
 RenderState rendered(const Scene& scene, const Accel& accel, const RenderOptions& options);
-kit::Estimate measure(const Scene& scene, const RenderOptions& options, const Plan& plan = {});
+kit::Estimate measure(const Scene& scene, const RenderOptions& options, const Repeats& plan = {});
 /// The raw image of every strategy (s, t).
 std::map<std::pair<int, int>, kit::Estimate> measure_techniques(const Scene& scene, RenderOptions options,
-                                                                const Plan& plan = {});
+                                                                const Repeats& plan = {});
 /// A picture known without noise.
 kit::Estimate exact(const Picture& picture);
 /// Mean over all pixels and channels.

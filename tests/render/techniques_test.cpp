@@ -27,7 +27,7 @@ Scene panels(const Material& material, LightKind light) {
 }
 
 void expect_all_equal(const Scene& scene, int longest) {
-  const Plan plan{.batches = 16, .passes = 250};
+  const Repeats plan{.batches = 16, .passes = 250};
   const auto images = measure_techniques(scene, statistical("bdpt", longest), plan);
   for (int n = 3; n <= longest + 1; ++n)
     for (int s = 0; s < n; ++s) {

@@ -59,10 +59,10 @@ inline Rgb base_value(const Principled& p, float cos_o, float cos_i, float cos_d
 }
 
 /// Probabilities of the parts for w in front: their albedos, estimated. What refracts counts as specular.
-struct Shares {
+struct PrincipledShares {
   float diffuse, specular, clearcoat;
 };
-inline Shares shares(const Principled& p, float cos) {
+inline PrincipledShares shares(const Principled& p, float cos) {
   float cos_t;
   const float dielectric = fresnel_dielectric(cos, p.eta, cos_t), through = refracting(p) * (1 - dielectric);
   const float s = luminance(front_fresnel(p, dielectric, cos, cos_t)) + through + 0.02f;
@@ -83,7 +83,7 @@ inline BsdfEval eval_front(const Principled& p, const Vec3& wo, const Vec3& wi, 
   if (!(g.cos > 0)) return {};
   float cos_t;
   const float dielectric = fresnel_dielectric(g.cos, p.eta, cos_t);
-  const Shares so = shares(p, wo.z), si = shares(p, wi.z);
+  const PrincipledShares so = shares(p, wo.z), si = shares(p, wi.z);
   const float mirrors = 1 - refraction_probability(p, true, dielectric);
   BsdfEval e{base_value(p, wo.z, wi.z, g.cos) + front_fresnel(p, dielectric, g.cos, cos_t) * g.value,
              so.specular * mirrors * g.pdf + so.diffuse * wi.z * inv_pi,
@@ -124,7 +124,7 @@ inline BsdfEval eval(const Principled& p, const Vec3& wo, const Vec3& wi, Mode m
 inline bool sample_direction(const Principled& p, const Vec3& wo, float u_lobe, const Vec2& u, Vec3& wi) {
   const bool front = wo.z > 0;
   const Vec3 up = front ? wo : -wo;
-  const Shares s = front ? shares(p, wo.z) : Shares{0, 1, 0};
+  const PrincipledShares s = front ? shares(p, wo.z) : PrincipledShares{0, 1, 0};
   if (take(u_lobe, s.diffuse)) {
     wi = cosine_direction(u);
     return wi.z > 0;

@@ -187,12 +187,12 @@ std::vector<bool> shown_materials(Params& p, const ObjFile& obj) {
 }
 
 // The materials that faces have and no part has yet, in the order of the file.
-std::vector<std::string> materials_left(Params& p, const ObjFile& obj, const std::vector<Part>& parts) {
+std::vector<std::string> materials_left(Params& p, const ObjFile& obj, const std::vector<MeshPart>& parts) {
   const std::vector<bool> shown = shown_materials(p, obj);
   std::vector<std::string> left;
   for (size_t i = 1; i < obj.materials.size(); ++i)
     if (shown[i] &&
-        std::none_of(parts.begin(), parts.end(), [&](const Part& part) { return part.name == obj.materials[i]; }))
+        std::none_of(parts.begin(), parts.end(), [&](const MeshPart& part) { return part.name == obj.materials[i]; }))
       left.push_back(obj.materials[i]);
   return left;
 }
@@ -220,7 +220,7 @@ bool has_material(Params& p, const std::string& name) {
   return obj != nullptr && std::find(obj->materials.begin() + 1, obj->materials.end(), name) != obj->materials.end();
 }
 
-void add_library_parts(Params& p, std::vector<Part>& parts) {
+void add_library_parts(Params& p, std::vector<MeshPart>& parts) {
   const std::string path = file(p, "filename");
   const ObjFile* obj = open_with(p, path, "mtllib");
   if (obj == nullptr) return;

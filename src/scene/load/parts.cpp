@@ -6,18 +6,18 @@ namespace ajar {
 namespace {
 
 // The faces that no bsdf is for; all of them where there is no other part.
-std::vector<Part> with_rest(Params& p, std::vector<Part> parts, const Node* bsdf) {
+std::vector<MeshPart> with_rest(Params& p, std::vector<MeshPart> parts, const Node* bsdf) {
   const bool own = p.loader.document.old && p.node.type == "obj" && bsdf == nullptr;
   if (own && boolean(p, "load_materials", true)) add_library_parts(p, parts);
   if (parts.empty()) return {{"", bsdf, {}}};
   std::set<std::string, std::less<>> names;
-  for (const Part& part : parts) names.insert(part.name);
+  for (const MeshPart& part : parts) names.insert(part.name);
   parts.push_back({"", bsdf, [names](std::string_view m) { return !names.contains(m); }});
   return parts;
 }
 
-std::vector<Part> parts_by_name(Params& p) {
-  std::vector<Part> parts;
+std::vector<MeshPart> parts_by_name(Params& p) {
+  std::vector<MeshPart> parts;
   std::set<std::string> names;
   const Node* rest = nullptr;
   for (const Node& child : p.node.children) {
@@ -43,7 +43,7 @@ bool goes_by_name(Params& p) {
 
 }  // namespace
 
-std::vector<Part> parts_of(Params& p) {
+std::vector<MeshPart> parts_of(Params& p) {
   const std::vector<const Node*> bsdfs = nested(p, "bsdf");
   const bool several = bsdfs.size() > 1;
   if (p.node.type == "obj" && (several || (!bsdfs.empty() && goes_by_name(p)))) return parts_by_name(p);
@@ -51,7 +51,7 @@ std::vector<Part> parts_of(Params& p) {
   return with_rest(p, {}, bsdfs.empty() ? nullptr : bsdfs.front());
 }
 
-uint32_t material_of(Params& p, const Part& part, bool emits) {
+uint32_t material_of(Params& p, const MeshPart& part, bool emits) {
   if (part.bsdf != nullptr) return load_bsdf(p.loader, *part.bsdf);
   if (part.material != none) return part.material;
   if (p.loader.document.old && !emits && !nested(p, "medium").empty()) {  // the bounds of a medium are not seen

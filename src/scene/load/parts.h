@@ -8,7 +8,7 @@
 
 namespace ajar {
 
-struct Part {
+struct MeshPart {
   std::string name;                             ///< what usemtl calls it; empty for the rest
   const Node* bsdf = nullptr;                   ///< none: the default
   std::function<bool(std::string_view)> takes;  ///< MeshOptions::takes_material; not set where the part is the whole
@@ -17,10 +17,10 @@ struct Part {
 
 /// Of an obj with several bsdfs, one part for each name and one for the rest; one part of any other shape. In version
 /// 0.x what has no bsdf there goes by the materials of the file's own libraries.
-std::vector<Part> parts_of(Params& p);
+std::vector<MeshPart> parts_of(Params& p);
 
 /// Adds a part for each material that the libraries of an obj (mtllib) have, some of its faces and no part yet.
-void add_library_parts(Params& p, std::vector<Part>& parts);
+void add_library_parts(Params& p, std::vector<MeshPart>& parts);
 
 /// The file, read once for all its parts; welded in version 0.x. Throws Error as read_obj does.
 const ObjFile& open_obj(Loader& loader, const std::string& path);
@@ -30,6 +30,6 @@ int obj_group(Params& p);
 bool has_material(Params& p, const std::string& name);
 
 /// The material of a part: its bsdf, or what shapes without one have.
-uint32_t material_of(Params& p, const Part& part, bool emits);
+uint32_t material_of(Params& p, const MeshPart& part, bool emits);
 
 }  // namespace ajar

@@ -68,7 +68,7 @@ void simple_mesh(Params& p, Shape& shape, Mesh&& mesh, const DMat4& m) {
   shape.mesh = add_mesh(p, std::move(mesh));
 }
 
-void sphere(Params& p, Shape& shape, const Part&) {
+void sphere(Params& p, Shape& shape, const MeshPart&) {
   const Node* at = find(p, {"center"});
   const DVec3 center = at == nullptr ? DVec3(0) : vector_of(p.loader, *at, 0);
   const double radius = positive(p, "radius", 1);
@@ -88,7 +88,7 @@ void sphere(Params& p, Shape& shape, const Part&) {
   place_quadric(p, shape, m);
 }
 
-void disk(Params& p, Shape& shape, const Part&) {
+void disk(Params& p, Shape& shape, const MeshPart&) {
   shape.kind = ShapeKind::disk;
   shape.flip = boolean(p, "flip_normals", false);
   DMat4 m = shape_to_world(p, true);
@@ -98,7 +98,7 @@ void disk(Params& p, Shape& shape, const Part&) {
   place_quadric(p, shape, m);
 }
 
-void cylinder(Params& p, Shape& shape, const Part&) {
+void cylinder(Params& p, Shape& shape, const MeshPart&) {
   shape.kind = ShapeKind::cylinder;
   shape.flip = boolean(p, "flip_normals", false);
   const Node *from = find(p, {"p0"}), *to = find(p, {"p1"});
@@ -116,10 +116,10 @@ void cylinder(Params& p, Shape& shape, const Part&) {
   place_quadric(p, shape, shape_to_world(p, false) * local);
 }
 
-void rectangle(Params& p, Shape& shape, const Part&) {
+void rectangle(Params& p, Shape& shape, const MeshPart&) {
   simple_mesh(p, shape, make_rectangle(), shape_to_world(p, true));
 }
-void cube(Params& p, Shape& shape, const Part&) { simple_mesh(p, shape, make_cube(), shape_to_world(p, false)); }
+void cube(Params& p, Shape& shape, const MeshPart&) { simple_mesh(p, shape, make_cube(), shape_to_world(p, false)); }
 
 // The mesh of the shape that comes next, if an earlier load placed it where it is now.
 bool take_placed(const Loader& loader, const std::string& source, const DMat4& m, Mesh& out) {
@@ -171,7 +171,7 @@ void file_mesh(Params& p, Shape& shape, const std::string& key, MeshOptions opti
   shape.mesh = add_mesh(p, std::move(mesh));
 }
 
-void obj(Params& p, Shape& shape, const Part& part) {
+void obj(Params& p, Shape& shape, const MeshPart& part) {
   const std::string path = file(p, "filename");
   MeshOptions options;
   options.flip_v = true;
@@ -192,7 +192,7 @@ void decode(std::vector<Rgb>& colors) {
   for (Rgb& c : colors) c = {linear(c.x), linear(c.y), linear(c.z)};
 }
 
-void ply(Params& p, Shape& shape, const Part&) {
+void ply(Params& p, Shape& shape, const MeshPart&) {
   const std::string path = file(p, "filename");
   MeshOptions options;
   options.srgb = p.loader.document.old && boolean(p, "srgb", true);
@@ -203,7 +203,7 @@ void ply(Params& p, Shape& shape, const Part&) {
   });
 }
 
-void serialized(Params& p, Shape& shape, const Part&) {
+void serialized(Params& p, Shape& shape, const MeshPart&) {
   const std::string path = file(p, "filename");
   const int index = integer(p, "shape_index", 0, 0, 1 << 24);
   file_mesh(p, shape, fmt::format("{}#{}", path, index), {},
@@ -212,7 +212,7 @@ void serialized(Params& p, Shape& shape, const Part&) {
 
 struct Entry {
   const char* type;
-  void (*read)(Params&, Shape&, const Part&);
+  void (*read)(Params&, Shape&, const MeshPart&);
 };
 constexpr Entry entries[] = {{"obj", obj}, {"rectangle", rectangle}, {"sphere", sphere}, {"serialized", serialized},
                              {"ply", ply}, {"cube", cube},           {"disk", disk},     {"cylinder", cylinder}};
@@ -309,7 +309,7 @@ void load_instance(Loader& loader, const Node& node, uint32_t group) {
   finish(p, {"id"});
 }
 
-void note_empty(Params& p, const Part& part) {
+void note_empty(Params& p, const MeshPart& part) {
   if (part.takes && part.name.empty()) return;  // nothing is left for the rest
   const std::string of = part.takes ? fmt::format(" of usemtl {}", part.name) : "";
   note(p.loader, p.node, fmt::format("{} has no faces{}: left out", text(p, "filename", ""), of));
@@ -324,7 +324,7 @@ bool has_area(const Scene& scene, const Shape& shape) {
   return false;
 }
 
-void load_part(Params& p, void (*read)(Params&, Shape&, const Part&), const Part& part, uint32_t group) {
+void load_part(Params& p, void (*read)(Params&, Shape&, const MeshPart&), const MeshPart& part, uint32_t group) {
   Loader& loader = p.loader;
   Shape shape;
   shape.group = group;
@@ -382,7 +382,7 @@ void load_shape(Loader& loader, const Node& node, uint32_t group) {
       std::find_if(std::begin(entries), std::end(entries), [&](const Entry& e) { return node.type == e.type; });
   if (entry == std::end(entries))
     return unsupported(loader, node, fmt::format("{}; {}", unknown(node), supported), "left out");
-  for (const Part& part : parts_of(p)) load_part(p, entry->read, part, group);
+  for (const MeshPart& part : parts_of(p)) load_part(p, entry->read, part, group);
   note_strays(p, "texture", "a texture is no bsdf: not used; put it inside one, <bsdf type=\"diffuse\">");
   finish(p, {"id", "velocity", "collapse"});
 }
