@@ -9,11 +9,10 @@
 #include <map>
 #include <memory>
 
-#include "ajar/render/sequence.h"
 #include "ajar/scene/load.h"
-#include "ajar/scene/motion.h"
 #include "grammar.h"
 #include "render/bytes.h"
+#include "render/frames.h"
 
 namespace ajar {
 namespace {
@@ -143,30 +142,6 @@ TEST_P(Agreement, StopsAndThreadsDoNotMatter) {
   expect_same_bytes(straight, state);
 }
 
-// The third frame of something that moves; stored: what is carried goes by way of a file.
-Picture third_frame(const std::vector<Scene>& frames, const RenderOptions& options, const SequenceOptions& sequence,
-                    bool stored) {
-  const File file("ajar-random-carried");
-  std::optional<Carried> carried;
-  for (uint32_t f = 0; f < 3; ++f) {
-    const Accel accel(frames[f]);
-    const std::vector<Box> moved = f > 0 ? find_motion(frames[f - 1], frames[f]) : std::vector<Box>();
-    std::optional<Fields> fields =
-        teach(frames[f], accel, options, sequence, carried ? &*carried : nullptr, moved, f, {});
-    carried = Carried{f, std::move(*fields)};
-    if (stored) {
-      save_carried(file.path, "key", *carried);
-      carried = load_carried(file.path, "key");
-    }
-  }
-  RenderOptions image = options;
-  image.seed = image_seed(sequence, options.seed, 2);
-  RenderState state = start_with(frames[2], image, carried->fields);
-  render(frames[2], Accel(frames[2]), image, state, {});
-  EXPECT_EQ(state.stats.rejected, 0u);
-  return develop(state.film);
-}
-
 TEST_P(Agreement, FramesOfAnAnimation) {
   std::vector<Scene> frames;
   for (const char* shift : {"0", "0.1", "0.2"}) frames.push_back(at(shift));
@@ -178,17 +153,22 @@ TEST_P(Agreement, FramesOfAnAnimation) {
   SequenceOptions sequence{.teach = 1, .begin = 10};
   sequence.coherence = {dice.chance(0.8), dice.chance(0.8)};
   SCOPED_TRACE(told(o) + ", " + made.noted + '\n' + made.xml);
-  const Picture straight = third_frame(frames, o, sequence, false);
+  const Picture straight = last_frame(frames, o, sequence);
   RenderOptions threads = o;
   threads.threads = 2;
-  EXPECT_TRUE(same_bytes(straight.pixels, third_frame(frames, threads, sequence, true).pixels));
+  const auto by_file = [](Carried& carried) {
+    const File file("ajar-random-carried");
+    save_carried(file.path, "key", carried);
+    carried = load_carried(file.path, "key");
+  };
+  EXPECT_TRUE(same_bytes(straight.pixels, last_frame(frames, threads, sequence, by_file).pixels));
 
   const auto look = [&](uint32_t effort, uint64_t seed) {
     std::vector<std::vector<double>> runs;
     RenderOptions run = o;
     for (run.seed = seed; run.seed < seed + 12; ++run.seed) {
       run.spp = 20 * effort;
-      const Picture p = third_frame(frames, run, sequence, false);
+      const Picture p = last_frame(frames, run, sequence);
       runs.emplace_back(p.pixels.begin(), p.pixels.end());
     }
     return kit::estimate(straight.width, straight.height, std::move(runs));

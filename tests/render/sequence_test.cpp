@@ -4,12 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include <glm/gtc/matrix_transform.hpp>
-
 #include "ajar/core/error.h"
-#include "ajar/scene/motion.h"
+#include "frames.h"
 #include "kit/stage.h"
-#include "measure.h"
 
 namespace ajar {
 namespace {
@@ -31,39 +28,20 @@ SequenceOptions usual() {
   return s;
 }
 
-// The last of so many frames, rendered as animations render it.
-Picture last_frame(const RenderOptions& options, const SequenceOptions& sequence, int frames) {
-  std::optional<Carried> carried;
-  Scene before;
-  for (int f = 0;; ++f) {
-    const Scene scene = room_at(f);
-    const Accel accel(scene);
-    const std::vector<Box> moved = carried ? find_motion(before, scene) : std::vector<Box>();
-    std::optional<Fields> fields =
-        teach(scene, accel, options, sequence, carried ? &*carried : nullptr, moved, uint32_t(f), {});
-    carried = Carried{uint32_t(f), std::move(*fields)};
-    if (f + 1 < frames) {
-      before = scene;
-      continue;
-    }
-    RenderOptions image = options;
-    image.seed = image_seed(sequence, options.seed, uint32_t(f));
-    RenderState state = start_with(scene, image, carried->fields);
-    render(scene, accel, image, state, {});
-    EXPECT_EQ(state.stats.rejected, 0u);
-    EXPECT_EQ(state.film.passes, image.spp);
-    EXPECT_EQ(state.learning.fields.generation, carried->fields.generation) << "fields of an image stay as they are";
-    return develop(state.film);
-  }
+std::vector<Scene> room_for(int frames) {
+  std::vector<Scene> out;
+  for (int f = 0; f < frames; ++f) out.push_back(room_at(f));
+  return out;
 }
 
 Estimate frames_of(const char* integrator, uint32_t passes) {
   RenderOptions options = statistical(integrator);
   options.spp = passes;
+  const std::vector<Scene> frames = room_for(3);
   std::vector<std::vector<double>> runs;
   for (uint64_t seed = 1; seed <= 16; ++seed) {
     options.seed = seed;
-    const Picture p = last_frame(options, usual(), 3);
+    const Picture p = last_frame(frames, options, usual());
     runs.emplace_back(p.pixels.begin(), p.pixels.end());
   }
   return estimate(12, 12, std::move(runs));
@@ -134,9 +112,9 @@ TEST(Sequence, ImagesNeverDrawTheNumbersThatTaught) {
 TEST(Sequence, DoesNotDependOnThreads) {
   RenderOptions options = statistical("guided-bdpt");
   options.spp = 2, options.sampler = SamplerKind::sobol, options.threads = 1;
-  const Picture one = last_frame(options, usual(), 2);
+  const Picture one = last_frame(room_for(2), options, usual());
   options.threads = 3;
-  EXPECT_EQ(last_frame(options, usual(), 2).pixels, one.pixels);
+  EXPECT_EQ(last_frame(room_for(2), options, usual()).pixels, one.pixels);
 }
 
 TEST(Sequence, CarriedFieldsLearnMore) {
