@@ -11,7 +11,7 @@
 namespace ajar::stress {
 namespace {
 
-constexpr int size = 24;
+constexpr int side = 24;
 
 void apply(Scene& scene, const Mat4& m) {
   for (Mesh& mesh : scene.meshes)
@@ -20,7 +20,7 @@ void apply(Scene& scene, const Mat4& m) {
     shape.to_world = m * shape.to_world, shape.to_object = Mat4(glm::inverse(glm::dmat4(shape.to_world)));
 }
 
-Scene unlit_room(int width = size, int height = size) {
+Scene unlit_room(int width = side, int height = side) {
   Scene scene = cornell(width);
   set_camera(scene, {0, 0, 4.2f}, Vec3(0), 36, width, height);
   for (Shape& shape : scene.shapes) shape.light = none;
@@ -28,7 +28,7 @@ Scene unlit_room(int width = size, int height = size) {
   return scene;
 }
 
-Scene plain_room() { return cornell(size); }
+Scene plain_room() { return cornell(side); }
 
 Scene finished(Scene scene) {
   finish(scene);
@@ -43,9 +43,9 @@ Scene grey_furnace(float albedo) {
 
 // The same image at any size: a room scaled and then moved, seen by a camera that went along.
 Scene moved_room(float scale, const Vec3& shift) {
-  Scene scene = cornell(size);
+  Scene scene = cornell(side);
   apply(scene, glm::scale(glm::translate(Mat4(1), shift), Vec3(scale)));
-  set_camera(scene, shift + Vec3(0, 0, 4.2f * scale), shift, 36, size, size);
+  set_camera(scene, shift + Vec3(0, 0, 4.2f * scale), shift, 36, side, side);
   return finished(std::move(scene));
 }
 
@@ -63,7 +63,7 @@ Scene corridor(int rooms) {
     add_box(scene, {x - 0.02f, -0.1f, z + 0.6f}, {x + 0.02f, 2.1f, 2.1f}, grey);
   }
   add_area_light(scene, add_quad(scene, {length - 1.3f, 1.98f, 0.7f}, {0.6f, 0, 0}, {0, 0, 0.6f}, black), Rgb(20));
-  set_camera(scene, {0.1f, 1, 0.5f}, {2, 0.9f, 1}, 70, size, size);
+  set_camera(scene, {0.1f, 1, 0.5f}, {2, 0.9f, 1}, 70, side, side);
   return finished(std::move(scene));
 }
 
@@ -79,13 +79,13 @@ Scene door(double degrees) {
   add_box(scene, {gap > 0 ? 0.7f + gap : 0.6f, -0.1f, -0.02f}, {2.1f, 2.1f, 0.02f}, grey);
   const float strength = gap > 0 ? 4 / gap : 20;  // so that all images are about as bright
   add_area_light(scene, add_quad(scene, {0.7f, 1.98f, -1.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, black), Rgb(strength));
-  set_camera(scene, {1.8f, 1, 1.8f}, {0.8f, 0.8f, 0}, 70, size, size);
+  set_camera(scene, {1.8f, 1, 1.8f}, {0.8f, 0.8f, 0}, 70, side, side);
   return finished(std::move(scene));
 }
 
 // A second floor so far under the floor: nobody may see it.
 Scene false_floor(float gap) {
-  Scene scene = cornell(size);
+  Scene scene = cornell(side);
   add_quad(scene, {-1, -1 - gap, 1}, {2, 0, 0}, {0, 0, -2}, add_diffuse(scene, Rgb(0.1f, 0.9f, 0.1f)));
   return finished(std::move(scene));
 }
@@ -110,7 +110,7 @@ Scene boxed_lamp(float gap) {
 
 // The floor in so many strips along x, as thin as that makes them, with triangles without area among them.
 Scene strips(int count) {
-  Scene scene = cornell(size);
+  Scene scene = cornell(side);
   Mesh mesh;
   for (int i = 0; i <= count; ++i) {
     const float z = 1 - 2 * float(i) / float(count);
@@ -127,7 +127,7 @@ Scene strips(int count) {
 
 // The floor in n x n squares.
 Scene fine_floor(uint32_t n) {
-  Scene scene = cornell(size);
+  Scene scene = cornell(side);
   Mesh mesh;
   for (uint32_t y = 0; y <= n; ++y)
     for (uint32_t x = 0; x <= n; ++x)
@@ -142,7 +142,7 @@ Scene fine_floor(uint32_t n) {
 }
 
 Scene bright_room(float factor) {
-  Scene scene = cornell(size);
+  Scene scene = cornell(side);
   for (Light& light : scene.lights) light.radiance.value *= factor;
   return finished(std::move(scene));
 }
@@ -172,7 +172,7 @@ Scene spark(float radius) {
 }
 
 Scene film(int width, int height) {
-  Scene scene = cornell(size);
+  Scene scene = cornell(side);
   set_camera(scene, {0, 0, 4.2f}, Vec3(0), 36, width, height);
   return finished(std::move(scene));
 }
@@ -188,7 +188,7 @@ Scene glass_in_sky(float ior, bool box) {
   else
     add_sphere(scene, Vec3(0), 1, glass);
   add_light(scene, LightKind::constant, Rgb(1));
-  set_camera(scene, {0, 0, 4}, Vec3(0), 45, size, size);
+  set_camera(scene, {0, 0, 4}, Vec3(0), 45, side, side);
   return finished(std::move(scene));
 }
 
@@ -206,17 +206,17 @@ Scene deltas_in_sky() {
 }
 
 Scene black_room() {
-  Scene scene = cornell(size);
+  Scene scene = cornell(side);
   for (Material& m : scene.materials) m.reflectance = Rgb(0);
   return finished(std::move(scene));
 }
 
 // Along the floor from just above it. bumps: 0 none.
 Scene grazing(float height, float bumps) {
-  Scene scene = bumps > 0 ? bump_plane(false, size) : cornell(size);
+  Scene scene = bumps > 0 ? bump_plane(false, side) : cornell(side);
   for (Material& m : scene.materials)
     if (m.kind == MaterialKind::bumpmap) m.map_scale = bumps;
-  set_camera(scene, {0, -1 + height, 0.95f}, {0.1f, -1 + height * 0.7f, -1}, 40, size, size);
+  set_camera(scene, {0, -1 + height, 0.95f}, {0.1f, -1 + height * 0.7f, -1}, 40, side, side);
   return finished(std::move(scene));
 }
 
@@ -300,8 +300,8 @@ void add_lights(List& l) {
   both.light = false;                    // it begins at lamps as they have power: once in 1e16 at the faint one
   both.blind = {"photon", "plain-vpl"};  // so do these
   l.group = "lights";
-  l.add("1", [] { return many_lights(1, 1, size); });
-  for (const int n : {100, 100000}) l.add(fmt::format("{}", n), [n] { return many_lights(n, 1, size); });
+  l.add("1", [] { return many_lights(1, 1, side); });
+  for (const int n : {100, 100000}) l.add(fmt::format("{}", n), [n] { return many_lights(n, 1, side); });
   l.add("none", [] { return finished(unlit_room()); }).answer = 0;
   l.add("one that is black", [] { return bright_room(0); }).answer = 0;
   for (const double r : {1e-3, 1e-6})
@@ -324,7 +324,7 @@ void add_materials(List& l) {
         std::pair(MaterialKind::roughplastic, "rough plastic")}) {
     l.group = what;
     for (const double a : {0.3, 1.0, 0.1, 0.01, 1e-3, 1e-4}) {
-      Case& c = l.add("roughness " + shown(a), [kind = kind, a] { return with_material(kind, float(a), size); });
+      Case& c = l.add("roughness " + shown(a), [kind = kind, a] { return with_material(kind, float(a), side); });
       c.light = a >= 0.1;
       if (!c.light) c.blind = {"photon"};  // a photon in 1/alpha^2 comes from within the lobe
     }
@@ -339,7 +339,7 @@ void add_materials(List& l) {
   Case& deltas = l.add("glass and mirrors alone", deltas_in_sky);
   deltas.answer = 1, deltas.light = false;
   l.group = "chain of mirrors";
-  for (const int n : {1, 16, 64}) l.add(fmt::format("{}", n), [n] { return mirror_chain(n, size); }).light = false;
+  for (const int n : {1, 16, 64}) l.add(fmt::format("{}", n), [n] { return mirror_chain(n, side); }).light = false;
   l.group = "surfaces";
   l.add("grey", plain_room);
   l.add("black", black_room);

@@ -14,9 +14,9 @@
 namespace ajar::stress {
 namespace {
 
-constexpr int height = 14;
+constexpr int usual_height = 14;
 
-Scene usual() { return two_rooms(40, height); }
+Scene usual() { return two_rooms(40, usual_height); }
 
 Scene with_radiance(const Rgb& radiance) {
   Scene scene = usual();

@@ -21,7 +21,7 @@ bool is_left(const Fields& fields, double share, const LearnOptions& options) {
   return double(bytes(fields)) < share * double(options.memory);
 }
 
-struct Work {
+struct Rebuild {
   Structure structure = Structure::adaptive;
   Rule rule = Rule::expected;
   const Fields* fields = nullptr;
@@ -36,7 +36,7 @@ struct Work {
 float mix_for(const LearnOptions& options, float weight) { return options.mix * weight / (weight + options.trust); }
 
 // (G8); at most what the cell's size allows.
-float nearness(const Fields& fields, const Work& w, uint32_t cell) {
+float nearness(const Fields& fields, const Rebuild& w, uint32_t cell) {
   const int64_t held = w.tallies->held[cell];
   const float old = w.field->cells[cell].near;
   if (held == 0) return old;
@@ -47,7 +47,7 @@ float nearness(const Fields& fields, const Work& w, uint32_t cell) {
 // Through which portal a cell's directions are drawn, and how many: as many the more radiance comes through it than
 // from elsewhere. More than come through it by themselves: from there on the other side's subpaths know the way, and
 // hardly any path finds through. (G11)
-void learn_opening(const Work& w, uint32_t cell, FieldCell& next) {
+void learn_opening(const Rebuild& w, uint32_t cell, FieldCell& next) {
   constexpr double most_drawn = 0.6, least_carried = 1e-4, usual_contrast = 2;
   const size_t n = w.field->portals.size() / 2;
   if (n == 0) return;
@@ -70,7 +70,7 @@ void learn_opening(const Work& w, uint32_t cell, FieldCell& next) {
 constexpr uint32_t settled = 8;
 
 // Strata of a portal: there are few, so they may be fine. What a portal held before it moved is a first guess.
-FieldCell learn_portal(Work& w, const FieldCell& old, bool moved, Trees& out) {
+FieldCell learn_portal(Rebuild& w, const FieldCell& old, bool moved, Trees& out) {
   LearnOptions fine = *w.options;
   fine.divide_stratum = 1 / 256.0f;
   FieldCell next = old;
@@ -91,7 +91,7 @@ FieldCell learn_portal(Work& w, const FieldCell& old, bool moved, Trees& out) {
 }
 
 // Irradiance that next-event estimation brings, or importance that the lens itself gives, by all lessons.
-float direct_of(const Work& w, uint32_t cell) {
+float direct_of(const Rebuild& w, uint32_t cell) {
   const FieldCell& old = w.field->cells[cell];
   if (w.tallies->directs[cell] == 0) return old.direct;
   const double mean = double(w.tallies->direct[cell]) * value_step * w.field->unit / double(w.tallies->directs[cell]);
@@ -100,7 +100,7 @@ float direct_of(const Work& w, uint32_t cell) {
 
 // Whether the cell's field goes on as it was: what was learned, now in the tree's masses, differs from it by no more
 // than noise may, and no stratum asks to be divided.   (T2)
-bool is_steady(const Work& w, const FieldCell& old, float mix, float strata, float total) {
+bool is_steady(const Rebuild& w, const FieldCell& old, float mix, float strata, float total) {
   constexpr float shares = 0.05f, of_strata = 0.15f, trust = 0.05f;
   if (!w.options->steady || w.structure != Structure::adaptive || !(old.visits > 0) || !(total > 0)) return false;
   const float was = old.total - old.direct;
@@ -112,7 +112,7 @@ bool is_steady(const Work& w, const FieldCell& old, float mix, float strata, flo
 }
 
 // The cell with new evidence alone, and with what it receives directly where that is another by far.
-FieldCell as_it_was(const Work& w, const FieldCell& old, float direct, Trees& out) {
+FieldCell as_it_was(const Rebuild& w, const FieldCell& old, float direct, Trees& out) {
   constexpr float of_direct = 0.25f, of_all = 0.05f;
   FieldCell next = old;
   next.root = append_evidence(out, w.tree, *w.field, old.root);
@@ -121,7 +121,7 @@ FieldCell as_it_was(const Work& w, const FieldCell& old, float direct, Trees& ou
   return next;
 }
 
-FieldCell learn_cell(Work& w, uint32_t cell, double area, double paths, Trees& out) {
+FieldCell learn_cell(Rebuild& w, uint32_t cell, double area, double paths, Trees& out) {
   const FieldCell& old = w.field->cells[cell];
   FieldCell next = old;
   w.tree.clear();
@@ -168,7 +168,7 @@ Field learn_field(const Fields& fields, const Field& field, Structure structure,
   next.unit = field.unit;
   next.cells.resize(n);
   parallel_for(blocks, [&](uint32_t b) {
-    Work work{structure, fields.rule, &fields, &field, &tallies, &options, divides, {}};
+    Rebuild work{structure, fields.rule, &fields, &field, &tallies, &options, divides, {}};
     for (uint32_t c = b * block; c < std::min(n, (b + 1) * block); ++c) {
       const bool sized = &field != &fields.disk;
       const double edge = sized ? double(fields.table.edge(level_of(fields.cells[c].key))) : 1;
@@ -177,7 +177,7 @@ Field learn_field(const Fields& fields, const Field& field, Structure structure,
   });
   for (uint32_t b = 0; b < blocks; ++b)
     join(next, std::move(trees[b]), std::span(next.cells).subspan(b * block, std::min(block, n - b * block)));
-  Work work{Structure::adaptive, fields.rule, &fields, &field, &tallies, &options, divides, {}};
+  Rebuild work{Structure::adaptive, fields.rule, &fields, &field, &tallies, &options, divides, {}};
   Trees of_portals;
   for (size_t i = 0; i < field.portals.size(); ++i)
     next.portals.push_back(learn_portal(work, field.portals[i], moved[i / 2], of_portals));

@@ -15,7 +15,7 @@ constexpr double largest_brought = 64;
 
 void add(int64_t& to, int64_t amount) { std::atomic_ref<int64_t>(to).fetch_add(amount, std::memory_order_relaxed); }
 
-struct Work {
+struct CutNode {
   uint32_t node = 0;
   LightEvidence e;
   float weight = 1;
@@ -31,29 +31,29 @@ double strength(const LightEvidence& e, double all) {
 struct Sum {
   double square = 0, hits = 0, tried = 0;
 };
-Sum sum_of(const std::vector<Work>& cut) {
+Sum sum_of(const std::vector<CutNode>& cut) {
   Sum s;
-  for (const Work& w : cut) s.square += double(w.e.square), s.hits += double(w.e.hits), s.tried += double(w.e.tried);
+  for (const CutNode& w : cut) s.square += double(w.e.square), s.hits += double(w.e.hits), s.tried += double(w.e.tried);
   return s;
 }
 
 // Makes shares add up to one; even ones where none is known, as of a cell that no lamp shines at.
-void normalise(std::vector<Work>& cut) {
+void normalise(std::vector<CutNode>& cut) {
   double total = 0;
-  for (const Work& w : cut) total += w.share;
+  for (const CutNode& w : cut) total += w.share;
   const bool known = total > 0 && total < double(infinity);
-  for (Work& w : cut) w.share = known ? w.share / total : 1 / double(cut.size());
+  for (CutNode& w : cut) w.share = known ? w.share / total : 1 / double(cut.size());
 }
 
 // The entries' new weights, and what becomes of their shares.
-void weigh(const LightRules& rules, std::vector<Work>& cut) {
+void weigh(const LightRules& rules, std::vector<CutNode>& cut) {
   const Sum sum = sum_of(cut);
   if (!(sum.hits > 0)) return;
   const double all = sum.square / sum.tried;
   double mean = 0;
-  for (const Work& w : cut) mean += w.share * strength(w.e, all);
+  for (const CutNode& w : cut) mean += w.share * strength(w.e, all);
   const double mix = double(rules.mix) * sum.hits / (sum.hits + 8);
-  for (Work& w : cut) {
+  for (CutNode& w : cut) {
     const float weight = float(mix * strength(w.e, all) / std::max(mean, 1e-30) + (1 - mix));  // (V3)
     w.share *= double(weight / w.weight);
     w.weight = weight;
@@ -64,7 +64,8 @@ void weigh(const LightRules& rules, std::vector<Work>& cut) {
 constexpr float least_tries = 32;  // of an entry that is divided
 
 // Divides strong entries as long as what is known of them carries it.
-void divide(const LightTree& tree, const LightRules& rules, const Work& from, std::vector<Work>& to, size_t& room) {
+void divide(const LightTree& tree, const LightRules& rules, const CutNode& from, std::vector<CutNode>& to,
+            size_t& room) {
   const LightNode& n = tree.nodes[from.node];
   if (n.left == 0 || room == 0 || !(from.share > double(rules.divide)) || from.e.tried < least_tries) {
     to.push_back(from);
@@ -72,7 +73,7 @@ void divide(const LightTree& tree, const LightRules& rules, const Work& from, st
   }
   --room;
   for (const uint32_t child : {n.left, n.left + 1}) {
-    Work half = from;
+    CutNode half = from;
     half.node = child;
     half.e.square *= 0.5f, half.e.hits *= 0.5f, half.e.tried *= 0.5f, half.share *= 0.5;
     divide(tree, rules, half, to, room);
@@ -80,16 +81,16 @@ void divide(const LightTree& tree, const LightRules& rules, const Work& from, st
 }
 
 // Joins children that are both in the cut and weak together.
-void unite(const LightTree& tree, const std::vector<uint32_t>& parents, double least, std::vector<Work>& cut) {
-  std::vector<Work> out;
-  for (const Work& w : cut) {
+void unite(const LightTree& tree, const std::vector<uint32_t>& parents, double least, std::vector<CutNode>& cut) {
+  std::vector<CutNode> out;
+  for (const CutNode& w : cut) {
     out.push_back(w);
     while (out.size() > 1) {
-      const Work &b = out.back(), &a = out[out.size() - 2];
+      const CutNode &b = out.back(), &a = out[out.size() - 2];
       const uint32_t parent = parents[b.node];
       if (b.node == 0 || parents[a.node] != parent || tree.nodes[parent].left != a.node) break;
       if (a.share + b.share > least) break;
-      Work both = a;
+      CutNode both = a;
       both.node = parent, both.share += b.share;
       both.weight = float((a.share * double(a.weight) + b.share * double(b.weight)) / std::max(both.share, 1e-30));
       both.e.square += b.e.square, both.e.hits += b.e.hits, both.e.tried += b.e.tried;
@@ -102,10 +103,10 @@ void unite(const LightTree& tree, const std::vector<uint32_t>& parents, double l
 
 // Whether the cut's entries would gain so little over the plain choice that they are not worth the time: both second
 // moments of what comes, over the square of its mean. What an entry brings is taken to be one value or nothing.   (V7)
-bool is_plain(const LightTree& tree, const LightRules& rules, const Receiver& cell, const std::vector<Work>& cut) {
+bool is_plain(const LightTree& tree, const LightRules& rules, const Receiver& cell, const std::vector<CutNode>& cut) {
   double promised = 0, mean = 0, plain = 0, learned = 0;
-  for (const Work& w : cut) promised += double(importance(tree, w.node, cell));
-  for (const Work& w : cut) {
+  for (const CutNode& w : cut) promised += double(importance(tree, w.node, cell));
+  for (const CutNode& w : cut) {
     const double tried = std::max(double(w.e.tried), 1.0), square = double(w.e.square) / tried;
     const double part = double(importance(tree, w.node, cell)) / promised;
     mean += part * std::sqrt(square * double(w.e.hits) / tried);
@@ -115,7 +116,7 @@ bool is_plain(const LightTree& tree, const LightRules& rules, const Receiver& ce
   return !(plain - learned > double(rules.least_gain) * sqr(mean));
 }
 
-void append(std::vector<Work>& cut, const LightTree& tree, const LightRules& rules, bool plain, LearnedLights& to) {
+void append(std::vector<CutNode>& cut, const LightTree& tree, const LightRules& rules, bool plain, LearnedLights& to) {
   LightCut c;
   c.first = uint32_t(to.entries.size()), c.count = uint32_t(cut.size());
   const Sum sum = sum_of(cut);
@@ -123,10 +124,11 @@ void append(std::vector<Work>& cut, const LightTree& tree, const LightRules& rul
     c.asks = float(std::clamp(64 * (sum.hits + 1) / sum.tried, double(rules.least_asks), 1.0));  // (V4)
   c.plain = plain;
   if (rules.by_power)
-    for (Work& w : cut) w.share = power_of(tree, tree.nodes[w.node].first, tree.nodes[w.node].last) * double(w.weight);
+    for (CutNode& w : cut)
+      w.share = power_of(tree, tree.nodes[w.node].first, tree.nodes[w.node].last) * double(w.weight);
   normalise(cut);
   double before = 0;
-  for (const Work& w : cut) {
+  for (const CutNode& w : cut) {
     to.entries.push_back({w.node, tree.nodes[w.node].first, w.weight, float(std::min(before, 1 - 0x1p-24))});
     to.evidence.push_back(w.e);
     before += w.share;
@@ -137,12 +139,12 @@ void append(std::vector<Work>& cut, const LightTree& tree, const LightRules& rul
 // A cut's entries with the evidence of the records. Shares are how often entries were chosen, where that was seen;
 // where they were not chosen by their weights (cell), what they would have been.
 void take(const LightTree& tree, const LearnedLights& v, const LightTallies& t, const LightCut& cut,
-          const LightRules& rules, const Receiver* cell, std::vector<Work>& out) {
+          const LightRules& rules, const Receiver* cell, std::vector<CutNode>& out) {
   double tried = 0;
   for (uint32_t i = cut.first; i < cut.first + cut.count; ++i) tried += double(t.tried[i]);
   out.clear();
   for (uint32_t i = cut.first; i < cut.first + cut.count; ++i) {
-    Work w{v.entries[i].node, v.evidence[i], v.entries[i].weight, double(share_of(v, cut, i))};
+    CutNode w{v.entries[i].node, v.evidence[i], v.entries[i].weight, double(share_of(v, cut, i))};
     if (cell) w.share = double(w.weight * importance(tree, w.node, *cell));
     if (tried > 0) {  // (V1)
       w.e.square = rules.forget * w.e.square + float(double(t.square[i]) * value_step);
@@ -219,7 +221,7 @@ LearnedLights learn_lights(const LightTree& tree, const LearnedLights& v, const 
   std::vector<uint32_t> parents(tree.nodes.size(), none);
   for (uint32_t i = 0; i < tree.nodes.size(); ++i)
     if (const uint32_t left = tree.nodes[i].left; left != 0) parents[left] = parents[left + 1] = i;
-  std::vector<Work> cut, divided;
+  std::vector<CutNode> cut, divided;
   for (size_t i = 0; i < v.cuts.size(); ++i) {
     const Receiver* cell = tree.sky.empty() || cells.empty() ? nullptr : &cells[i];
     take(tree, v, tallies, v.cuts[i], rules, v.cuts[i].plain ? cell : nullptr, cut);
@@ -228,7 +230,7 @@ LearnedLights learn_lights(const LightTree& tree, const LearnedLights& v, const 
     unite(tree, parents, 0.2 * double(rules.divide), cut);
     size_t room = cut.size() < rules.most ? rules.most - cut.size() : 0;
     divided.clear();
-    for (const Work& w : cut) divide(tree, rules, w, divided, room);
+    for (const CutNode& w : cut) divide(tree, rules, w, divided, room);
     append(divided, tree, rules, plain, next);
   }
   return next;

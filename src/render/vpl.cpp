@@ -8,13 +8,13 @@
 namespace ajar {
 namespace {
 
-struct Work {
+struct Gathering {
   const Job& job;
   Sample& sample;
   Scratch& scratch;
 };
 
-void add(Work& work, const Candidate& c, float weight, int s, int t) {
+void add(Gathering& work, const Candidate& c, float weight, int s, int t) {
   const Rgb value = c.value * weight;
   if (!accept(value, work.sample, work.scratch)) return;
   work.sample.value += value;
@@ -33,20 +33,20 @@ bool is_caustic(const Subpath& camera, int n) {
 
 // Of hits and next-event estimation among each other, and of what only light subpaths can aim at: nothing else finds
 // what they find.
-float weigh(const Work& work, Candidate& c) {
+float weigh(const Gathering& work, Candidate& c) {
   c.shares.inner = c.shares.seen = 0;
   if (!is_caustic(work.scratch.camera, c.camera.n)) c.camera.sum_before = 0;
   return float(weight(work.job.walk.heuristic, c));
 }
 
 // The same of a path that is joined further up: what is left to all that joins and walks share.
-float share_of_camera(const Work& work, Candidate& c) {
+float share_of_camera(const Gathering& work, Candidate& c) {
   if (!is_caustic(work.scratch.camera, c.camera.n)) return 1;
   c.shares.inner = c.shares.seen = 0;
   return float(mis_of_camera(work.job.walk.heuristic, c.light, c.camera, c.shares));  // (I3)
 }
 
-bool is_free(Work& work, Candidate& c, int s, int t) {
+bool is_free(Gathering& work, Candidate& c, int s, int t) {
   ++work.scratch.counters.shadow_rays;
   ++work.scratch.ledger->at(s, t).rays;
   if (!visible(*work.job.accel, c.segment)) return false;
@@ -68,7 +68,7 @@ double share_at(const Job& job, const LightStore::Place& at, const Vec3& x, doub
 
 // Whether the walk is to find what its last vertex y scatters, which joins at the one before could have found as well.
 // What passes y by a delta event they could not.
-bool is_walked(Work& work, const Surface& surface) {
+bool is_walked(Gathering& work, const Surface& surface) {
   const Subpath& camera = work.scratch.camera;
   const Vertex &x = camera[camera.n - 2], &y = camera[camera.n - 1];
   if (camera.n < 3 || x.delta || !connectable(x.guide) || !connectable(y.guide)) return true;
@@ -93,7 +93,7 @@ void guide_way_back(const Job& job, const Surface& surface, Subpath& camera) {
   guide.mix_other = guided.mix_other, guide.back = guided.back;
 }
 
-void join_lights(Work& work, const Surface& surface) {
+void join_lights(Gathering& work, const Surface& surface) {
   const Job& job = work.job;
   const Subpath& camera = work.scratch.camera;
   Candidate c;
@@ -102,7 +102,7 @@ void join_lights(Work& work, const Surface& surface) {
   charge_join(work.scratch, 0, camera.n);
 }
 
-void join_next_event(Work& work) {
+void join_next_event(Gathering& work) {
   const Job& job = work.job;
   const Subpath& camera = work.scratch.camera;
   Candidate c;
@@ -127,7 +127,7 @@ uint32_t region_at(const Fields& fields, const Vertex& x) {
   return cell == none ? no_region : fields.cells[cell].region;
 }
 
-void join_vpls(Work& work) {
+void join_vpls(Gathering& work) {
   const Job& job = work.job;
   Scratch& scratch = work.scratch;
   const Subpath& camera = scratch.camera;
@@ -159,7 +159,7 @@ bool is_clear(const Vertex& v) { return !connectable(v.guide); }
 
 // Follows the camera subpath, and joins what can be joined on the way. Stops at the first surface if that is to be
 // followed several times.
-void walk_on(Work& work, Walk& walk) {
+void walk_on(Gathering& work, Walk& walk) {
   const Job& job = work.job;
   Sample& sample = work.sample;
   Scratch& scratch = work.scratch;
@@ -196,7 +196,7 @@ constexpr int clear_branches = 8;
 }  // namespace
 
 void trace_vpl(const Job& job, Sample& sample, Scratch& scratch) {
-  Work work{job, sample, scratch};
+  Gathering work{job, sample, scratch};
   Subpath& camera = scratch.camera;
   Walk walk;
   start_camera(*job.scene, job.vpls->camera, sample.raster, sample.lens, camera, walk);

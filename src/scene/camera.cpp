@@ -18,10 +18,6 @@ Vec3 lens_point(const Camera& c, const Vec2& lens) {
   return c.kind == CameraKind::thinlens ? Vec3(to_disk(lens) * c.aperture, 0) : Vec3(0);
 }
 
-Vec3 map_point(const Mat4& m, const Vec3& p) {
-  return Vec3(m[0]) * p.x + Vec3(m[1]) * p.y + Vec3(m[2]) * p.z + Vec3(m[3]);
-}
-Vec3 map_vector(const Mat4& m, const Vec3& v) { return Vec3(m[0]) * v.x + Vec3(m[1]) * v.y + Vec3(m[2]) * v.z; }
 float volume(const Mat4& m) { return std::abs(glm::dot(Vec3(m[0]), glm::cross(Vec3(m[1]), Vec3(m[2])))); }
 
 // Pixels per unit of camera-space area in the image plane.

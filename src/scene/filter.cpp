@@ -3,7 +3,7 @@
 namespace ajar {
 namespace {
 
-constexpr int bins = 512;
+constexpr int table_size = 512;
 
 double sinc(double x) { return x == 0 ? 1 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x); }
 
@@ -54,24 +54,24 @@ double absolute_area(double a, double b) {
 }
 
 void fill_tables(Filter& f) {
-  std::vector<double> values(bins + 1);
-  for (int i = 0; i <= bins; ++i) values[i] = formula(f, (2.0 * i / bins - 1) * f.radius);
-  const double step = 2.0 * f.radius / bins;
+  std::vector<double> values(table_size + 1);
+  for (int i = 0; i <= table_size; ++i) values[i] = formula(f, (2.0 * i / table_size - 1) * f.radius);
+  const double step = 2.0 * f.radius / table_size;
   double area = 0, absolute = 0;
-  for (int i = 0; i < bins; ++i) {
+  for (int i = 0; i < table_size; ++i) {
     area += (values[i] + values[i + 1]) / 2 * step;
     absolute += absolute_area(values[i], values[i + 1]) * step;
   }
-  f.table.resize(bins + 1);
-  f.cdf.resize(bins + 1);
+  f.table.resize(table_size + 1);
+  f.cdf.resize(table_size + 1);
   f.sign_norm = float(absolute / area);
   double sum = 0;
-  for (int i = 0; i <= bins; ++i) {
+  for (int i = 0; i <= table_size; ++i) {
     f.table[i] = float(values[i] / area);
     f.cdf[i] = float(sum / absolute);
-    if (i < bins) sum += absolute_area(values[i], values[i + 1]) * step;
+    if (i < table_size) sum += absolute_area(values[i], values[i + 1]) * step;
   }
-  f.cdf[bins] = 1;
+  f.cdf[table_size] = 1;
 }
 
 // Place in [0,1] up to which a line from a >= 0 to b >= 0 over the unit interval has the share u of its integral.
@@ -90,11 +90,11 @@ float invert_absolute_line(float a, float b, float u) {
 
 float sample_table(const Filter& f, float u, float& weight) {
   uint32_t i = 0;
-  for (uint32_t half = bins / 2; half > 0; half /= 2) i += f.cdf[i + half] <= u ? half : 0;
+  for (uint32_t half = table_size / 2; half > 0; half /= 2) i += f.cdf[i + half] <= u ? half : 0;
   const float a = f.table[i], b = f.table[i + 1], share = (u - f.cdf[i]) / (f.cdf[i + 1] - f.cdf[i]);
   const float in_bin = std::clamp(invert_absolute_line(a, b, share), 0.0f, 1.0f);
   weight *= a + (b - a) * in_bin < 0 ? -f.sign_norm : f.sign_norm;
-  return ((float(i) + in_bin) * (2.0f / bins) - 1) * f.radius;
+  return ((float(i) + in_bin) * (2.0f / table_size) - 1) * f.radius;
 }
 
 float sample_tent(float u) { return u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 - 2 * u); }
@@ -113,8 +113,8 @@ Filter make_filter(FilterKind kind, float radius, float a, float b) {
 float eval(const Filter& f, float x) {
   if (f.kind == FilterKind::box) return x >= -f.radius && x < f.radius ? 0.5f / f.radius : 0;
   if (f.kind == FilterKind::tent) return std::max(0.0f, f.radius - std::abs(x)) / (f.radius * f.radius);
-  const float at = (x / f.radius + 1) * (bins / 2);
-  if (!(at >= 0 && at < bins)) return 0;
+  const float at = (x / f.radius + 1) * (table_size / 2);
+  if (!(at >= 0 && at < table_size)) return 0;
   const int i = int(at);
   return f.table[i] + (f.table[i + 1] - f.table[i]) * (at - float(i));
 }

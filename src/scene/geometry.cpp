@@ -11,8 +11,6 @@ namespace {
 constexpr float error_scale = 0x1p-21f;
 constexpr float least_error = 1e-30f;
 
-Vec3 map_vector(const Mat4& m, const Vec3& v) { return Vec3(m[0]) * v.x + Vec3(m[1]) * v.y + Vec3(m[2]) * v.z; }
-Vec3 map_point(const Mat4& m, const Vec3& p) { return map_vector(m, p) + Vec3(m[3]); }
 // By the transpose of m's linear part: normals, with m the inverse of the transform.
 Vec3 map_normal(const Mat4& m, const Vec3& n) {
   return {glm::dot(Vec3(m[0]), n), glm::dot(Vec3(m[1]), n), glm::dot(Vec3(m[2]), n)};

@@ -9,16 +9,6 @@
 namespace ajar {
 namespace {
 
-Rgb radiance_at(const Scene& scene, const Light& light, const Surface& at) {
-  return light.textured ? eval(scene, light.radiance, at) : light.radiance.value;
-}
-
-LightPoint point_of(const Surface& at, uint32_t light) {
-  LightPoint p;
-  p.p = at.p, p.error = at.error, p.n = at.ng, p.uv = at.uv, p.light = light, p.prim = at.prim;
-  return p;
-}
-
 LightPoint point_at_infinity(const Vec3& travel, uint32_t light) {
   LightPoint p;
   p.n = travel, p.light = light, p.infinite = true;

@@ -6,19 +6,10 @@
 #include "ajar/core/warp.h"
 #include "ajar/scene/geometry.h"
 #include "environment.h"
+#include "solid.h"
 
 namespace ajar {
 namespace {
-
-LightPoint point_of(const Surface& at, uint32_t light) {
-  LightPoint p;
-  p.p = at.p, p.error = at.error, p.n = at.ng, p.uv = at.uv, p.light = light, p.prim = at.prim;
-  return p;
-}
-
-Rgb radiance_at(const Scene& scene, const Light& light, const Surface& at) {
-  return light.textured ? eval(scene, light.radiance, at) : light.radiance.value;
-}
 
 // Whether the piece is one triangle of many.
 bool is_triangle(const Light& light, const LightPiece& piece) {

@@ -1,8 +1,9 @@
 // Enters: an area light and the point that it is seen from.
-// Leaves: points on the shape with their solid-angle density there. Private to the room.
+// Leaves: points on the shape with their solid-angle density there, and what they emit. Private to the room.
 #pragma once
 
 #include "ajar/scene/geometry.h"
+#include "ajar/scene/texture.h"
 
 namespace ajar {
 
@@ -23,6 +24,16 @@ float shape_pdf(const Scene& scene, const Light& light, const LightPoint& point,
 Surface sample_light_area(const Scene& scene, const Light& light, const Vec2& u, float& pdf);
 /// Density per area with which sample_light_area finds this point.
 float light_area_pdf(const Scene& scene, const Light& light, const LightPoint& point);
+/// The point of light `light` that a surface shows.
+inline LightPoint point_of(const Surface& at, uint32_t light) {
+  LightPoint p;
+  p.p = at.p, p.error = at.error, p.n = at.ng, p.uv = at.uv, p.light = light, p.prim = at.prim;
+  return p;
+}
+/// Radiance that an area light emits there, on its emitting side.
+inline Rgb radiance_at(const Scene& scene, const Light& light, const Surface& at) {
+  return light.textured ? eval(scene, light.radiance, at) : light.radiance.value;
+}
 /// The rectangle that a mesh is; area 0 if it is none.
 Rectangle rectangle_of(const Mesh& mesh);
 

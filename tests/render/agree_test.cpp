@@ -28,8 +28,7 @@ TEST_P(Agree, InEveryBlock) {
     expect_same(measured("guided-path", 20, 5000), bdpt, "guided-path, bdpt");
   }
   if (initials.find_first_of("pv") != std::string::npos)
-    for (const std::string vpls : {"plain-vpl", "vpl"})
-      expect_same(measured(vpls, 10, 6000), bdpt, vpls + ", bdpt");
+    for (const std::string vpls : {"plain-vpl", "vpl"}) expect_same(measured(vpls, 10, 6000), bdpt, vpls + ", bdpt");
   if (initials.find('l') != std::string::npos) expect_same(measured("light", 60, 3000), bdpt, "light, bdpt");
   // The young passes are dropped, so these are passes through fields that have learned, and went on learning.
   expect_same(measured("guided-bdpt", 20, 4000), bdpt, "guided-bdpt, bdpt");

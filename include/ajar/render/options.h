@@ -31,7 +31,7 @@ struct RenderOptions {
   bool learn_lights = false;  ///< path and bdpt: learn which lights cells see (LearnOptions::lights), and nothing else
   bool leaves_out = false;    ///< see may_leave_out
   bool limit_fireflies = false;  ///< of the developed image (film/fireflies.h)
-  bool techniques = false;    ///< keep an image of every (s, t) with s + t <= most_vertices
+  bool techniques = false;       ///< keep an image of every (s, t) with s + t <= most_vertices
 };
 
 inline bool has_time_limit(const RenderOptions& o) { return o.seconds > 0 || o.cpu_seconds > 0; }

@@ -319,38 +319,38 @@ void normalmap(Params& p, Material& m) {
   take_nested(p, m, 1, 1);
 }
 
-struct Entry {
+struct MaterialReader {
   const char* type;
   MaterialKind kind;
   void (*read)(Params&, Material&);
 };
-constexpr Entry entries[] = {{"diffuse", MaterialKind::diffuse, diffuse},
-                             {"twosided", MaterialKind::twosided, twosided},
-                             {"roughplastic", MaterialKind::roughplastic, roughplastic},
-                             {"plastic", MaterialKind::plastic, plastic},
-                             {"roughconductor", MaterialKind::roughconductor, roughconductor},
-                             {"conductor", MaterialKind::conductor, conductor},
-                             {"dielectric", MaterialKind::dielectric, dielectric},
-                             {"roughdielectric", MaterialKind::roughdielectric, roughdielectric},
-                             {"thindielectric", MaterialKind::thindielectric, dielectric},
-                             {"mask", MaterialKind::mask, mask},
-                             {"bumpmap", MaterialKind::bumpmap, bumpmap},
-                             {"normalmap", MaterialKind::normalmap, normalmap},
-                             {"blendbsdf", MaterialKind::blend, blend},
-                             {"mixturebsdf", MaterialKind::mixture, mixture},
-                             {"principled", MaterialKind::principled, principled},
-                             {"phong", MaterialKind::phong, phong},
-                             {"null", MaterialKind::null, null},
-                             {"roughdiffuse", MaterialKind::roughdiffuse, roughdiffuse},
-                             {"difftrans", MaterialKind::difftrans, difftrans},
-                             {"ward", MaterialKind::ward, ward},
-                             {"pplastic", MaterialKind::roughplastic, pplastic},
-                             {"polarizer", MaterialKind::thindielectric, polarizer}};
+constexpr MaterialReader material_readers[] = {{"diffuse", MaterialKind::diffuse, diffuse},
+                                               {"twosided", MaterialKind::twosided, twosided},
+                                               {"roughplastic", MaterialKind::roughplastic, roughplastic},
+                                               {"plastic", MaterialKind::plastic, plastic},
+                                               {"roughconductor", MaterialKind::roughconductor, roughconductor},
+                                               {"conductor", MaterialKind::conductor, conductor},
+                                               {"dielectric", MaterialKind::dielectric, dielectric},
+                                               {"roughdielectric", MaterialKind::roughdielectric, roughdielectric},
+                                               {"thindielectric", MaterialKind::thindielectric, dielectric},
+                                               {"mask", MaterialKind::mask, mask},
+                                               {"bumpmap", MaterialKind::bumpmap, bumpmap},
+                                               {"normalmap", MaterialKind::normalmap, normalmap},
+                                               {"blendbsdf", MaterialKind::blend, blend},
+                                               {"mixturebsdf", MaterialKind::mixture, mixture},
+                                               {"principled", MaterialKind::principled, principled},
+                                               {"phong", MaterialKind::phong, phong},
+                                               {"null", MaterialKind::null, null},
+                                               {"roughdiffuse", MaterialKind::roughdiffuse, roughdiffuse},
+                                               {"difftrans", MaterialKind::difftrans, difftrans},
+                                               {"ward", MaterialKind::ward, ward},
+                                               {"pplastic", MaterialKind::roughplastic, pplastic},
+                                               {"polarizer", MaterialKind::thindielectric, polarizer}};
 
 // With --lenient: what is nested in the unknown bsdf, or grey.
 uint32_t stand_in(Loader& loader, const Node& node) {
   std::string known;
-  for (const Entry& e : entries) known += (known.empty() ? "" : ", ") + std::string(e.type);
+  for (const MaterialReader& e : material_readers) known += (known.empty() ? "" : ", ") + std::string(e.type);
   Params p(loader, node);
   const std::vector<const Node*> inner = nested(p, "bsdf");
   const char* hint = node.type == "mixture" ? ", mixturebsdf today" : "";
@@ -392,16 +392,16 @@ uint32_t load_bsdf(Loader& loader, const Node& node) {
   if (found != loader.bsdfs.end()) return found->second;
   const Open open(loader, node);
   const std::string type = loader.document.old && node.type == "bump" ? "bumpmap" : node.type;  // as 0.4 calls it
-  const auto entry =
-      std::find_if(std::begin(entries), std::end(entries), [&](const Entry& e) { return type == e.type; });
+  const auto reader = std::find_if(std::begin(material_readers), std::end(material_readers),
+                                   [&](const MaterialReader& e) { return type == e.type; });
   uint32_t index;
-  if (entry == std::end(entries)) {
+  if (reader == std::end(material_readers)) {
     index = stand_in(loader, node);
   } else {
     Material m;
-    m.kind = entry->kind;
+    m.kind = reader->kind;
     Params p(loader, node);
-    entry->read(p, m);
+    reader->read(p, m);
     finish(p, {"specular_sampling_weight", "specular_sampling", "specular_sampling_rate", "clearcoat_sampling_rate",
                "diffuse_reflectance_sampling_rate", "spec_trans_sampling_rate", "sample_visible", "id"});
     index = add_material(loader, node, m);

@@ -5,7 +5,7 @@
 namespace ajar {
 namespace {
 
-constexpr const char* supported =
+constexpr const char* supported_emitters =
     "supported: area, envmap, constant, point, spot, directional, projector, sky, sun, sunsky";
 
 DVec3 checked_direction(const Loader& loader, const Node& node, const DVec3& d) {
@@ -126,11 +126,11 @@ void sky(Params& p) { load_daylight(p, true, false); }
 void sun(Params& p) { load_daylight(p, false, true); }
 void sunsky(Params& p) { load_daylight(p, true, true); }
 
-struct Entry {
+struct EmitterReader {
   const char* type;
   void (*read)(Params&);
 };
-constexpr Entry entries[] = {
+constexpr EmitterReader emitter_readers[] = {
     {"constant", constant},   {"envmap", envmap}, {"point", point}, {"spot", spot},    {"directional", directional},
     {"projector", projector}, {"sky", sky},       {"sun", sun},     {"sunsky", sunsky}};
 
@@ -154,17 +154,17 @@ Mat4 orientation(const DMat4& m) {
 void load_emitter(Loader& loader, const Node& node, uint32_t shape) {
   Params p(loader, node);
   const bool is_area = node.type == "area";
-  const auto entry =
-      std::find_if(std::begin(entries), std::end(entries), [&](const Entry& e) { return node.type == e.type; });
-  if (!is_area && entry == std::end(entries))
-    return unsupported(loader, node, fmt::format("{}; {}", unknown(node), supported), "left out");
+  const auto reader = std::find_if(std::begin(emitter_readers), std::end(emitter_readers),
+                                   [&](const EmitterReader& e) { return node.type == e.type; });
+  if (!is_area && reader == std::end(emitter_readers))
+    return unsupported(loader, node, fmt::format("{}; {}", unknown(node), supported_emitters), "left out");
   if (is_area && shape == none) fail(loader, node, "an area light belongs inside the <shape> that emits");
   if (!is_area && shape != none)
     return unsupported(loader, node, "only an area light can be inside a shape", "left out");
   if (is_area)
     area(p, shape);
   else
-    entry->read(p);
+    reader->read(p);
   finish(p, {"id", "cache", "mis_compensation", "albedo", "resolution"});
 }
 

@@ -15,8 +15,8 @@
 namespace ajar {
 namespace {
 
-constexpr std::string_view blanks = " \t\r\n";
-constexpr size_t max_open = 32, max_references = 100'000, max_bytes = size_t(1) << 26;
+constexpr std::string_view white = " \t\r\n";
+constexpr size_t max_open_entities = 32, max_references = 100'000, max_bytes = size_t(1) << 26;
 
 struct Entity {
   std::string text, file;
@@ -44,7 +44,7 @@ struct Cursor {
     rest.remove_prefix(word.size());
     return true;
   }
-  void skip_blanks() { rest.remove_prefix(std::min(rest.find_first_not_of(blanks), rest.size())); }
+  void skip_blanks() { rest.remove_prefix(std::min(rest.find_first_not_of(white), rest.size())); }
   // What stands before the mark, which is passed too; all that is left where there is none.
   std::string_view until(std::string_view mark) {
     const size_t at = rest.find(mark);
@@ -129,7 +129,7 @@ void put_in(Expansion& e, std::string_view name) {
   const auto found = e.entities.find(name);
   if (found == e.entities.end()) e.fail(name, "is not declared in the DOCTYPE");
   if (std::find(e.open.begin(), e.open.end(), name) != e.open.end()) e.fail(name, "contains itself");
-  if (e.open.size() >= max_open) e.fail(name, fmt::format("is nested more than {} deep", max_open));
+  if (e.open.size() >= max_open_entities) e.fail(name, fmt::format("is nested more than {} deep", max_open_entities));
   if (++e.references > max_references) e.fail(name, fmt::format("makes more than {} references", max_references));
   Entity& entity = found->second;
   if (!entity.is_read) read_entity_file(e, found->first, entity);

@@ -13,7 +13,7 @@ namespace ajar {
 
 namespace {
 
-constexpr size_t max_open = 48;  // a plugin in a plugin in a plugin ...
+constexpr size_t max_open_plugins = 48;  // a plugin in a plugin in a plugin ...
 
 // In pieces: a mesh may be large.
 uint64_t checksum_of_file(const std::string& path) {
@@ -86,8 +86,8 @@ const Node& follow(const Loader& loader, const Node& node) {
 Open::Open(Loader& l, const Node& node) : loader(l) {
   if (std::find(loader.open.begin(), loader.open.end(), &node) != loader.open.end())
     fail(loader, node, "contains itself; take away the reference that leads back to it");
-  if (loader.open.size() >= max_open)
-    fail(loader, node, fmt::format("plugins are nested more than {} deep; leave some out", max_open));
+  if (loader.open.size() >= max_open_plugins)
+    fail(loader, node, fmt::format("plugins are nested more than {} deep; leave some out", max_open_plugins));
   loader.open.push_back(&node);
 }
 

@@ -10,7 +10,7 @@
 namespace ajar {
 namespace {
 
-constexpr const char* supported =
+constexpr const char* supported_shapes =
     "supported: obj, ply, serialized, rectangle, cube, sphere, disk, cylinder, shapegroup, instance, merge";
 constexpr int sphere_rings = 128, sphere_segments = 256;  // of a sphere that its transform makes an ellipsoid
 
@@ -210,12 +210,13 @@ void serialized(Params& p, Shape& shape, const MeshPart&) {
             [&](const MeshOptions& o) { return read_serialized(path, index, o); });
 }
 
-struct Entry {
+struct ShapeReader {
   const char* type;
   void (*read)(Params&, Shape&, const MeshPart&);
 };
-constexpr Entry entries[] = {{"obj", obj}, {"rectangle", rectangle}, {"sphere", sphere}, {"serialized", serialized},
-                             {"ply", ply}, {"cube", cube},           {"disk", disk},     {"cylinder", cylinder}};
+constexpr ShapeReader shape_readers[] = {
+    {"obj", obj}, {"rectangle", rectangle}, {"sphere", sphere}, {"serialized", serialized},
+    {"ply", ply}, {"cube", cube},           {"disk", disk},     {"cylinder", cylinder}};
 
 // What the textures of a shape need of its mesh.
 struct Shown {
@@ -378,11 +379,11 @@ void load_shape(Loader& loader, const Node& node, uint32_t group) {
     for (const Node* shape : nested(p, "shape")) load_shape(loader, *shape, group);
     return finish(p);
   }
-  const auto entry =
-      std::find_if(std::begin(entries), std::end(entries), [&](const Entry& e) { return node.type == e.type; });
-  if (entry == std::end(entries))
-    return unsupported(loader, node, fmt::format("{}; {}", unknown(node), supported), "left out");
-  for (const MeshPart& part : parts_of(p)) load_part(p, entry->read, part, group);
+  const auto reader = std::find_if(std::begin(shape_readers), std::end(shape_readers),
+                                   [&](const ShapeReader& e) { return node.type == e.type; });
+  if (reader == std::end(shape_readers))
+    return unsupported(loader, node, fmt::format("{}; {}", unknown(node), supported_shapes), "left out");
+  for (const MeshPart& part : parts_of(p)) load_part(p, reader->read, part, group);
   note_strays(p, "texture", "a texture is no bsdf: not used; put it inside one, <bsdf type=\"diffuse\">");
   finish(p, {"id", "velocity", "collapse"});
 }

@@ -24,8 +24,6 @@ Material microfacet(MaterialKind kind, Microfacet distribution, float alpha_u, f
   return m;
 }
 
-namespace {
-
 Material parent(MaterialKind kind, std::initializer_list<uint32_t> nested) {
   Material m = material(kind);
   std::copy(nested.begin(), nested.end(), m.nested.begin());
@@ -37,6 +35,8 @@ Material with_normal(const Vec3& n, uint32_t nested) {
   m.map = Slot(glm::normalize(n) * 0.5f + 0.5f);
   return m;
 }
+
+namespace {
 
 Material coloured(MaterialKind kind, float alpha = 0.1f) {
   Material m = microfacet(kind, Microfacet::ggx, alpha, alpha);

@@ -2,6 +2,7 @@
 // Leaves: materials of every kind, with their sharp and odd variants, resolved in their own frame for the tests.
 #pragma once
 
+#include <initializer_list>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -49,5 +50,7 @@ Vec3 random_direction(Sampler& sampler);
 
 Material material(MaterialKind kind);
 Material microfacet(MaterialKind kind, Microfacet distribution, float alpha_u, float alpha_v);
+Material parent(MaterialKind kind, std::initializer_list<uint32_t> nested);
+Material with_normal(const Vec3& n, uint32_t nested);
 
 }  // namespace ajar::test

@@ -7,12 +7,6 @@
 namespace ajar::test {
 namespace {
 
-Material parent(MaterialKind kind, std::initializer_list<uint32_t> nested) {
-  Material m = material(kind);
-  std::copy(nested.begin(), nested.end(), m.nested.begin());
-  return m;
-}
-
 Material grey(float reflectance) {
   Material m = material(MaterialKind::diffuse);
   m.reflectance = reflectance;
@@ -45,12 +39,6 @@ TEST(Resolve, TwosidedTurnsTheFrameToTheViewer) {
   EXPECT_EQ(back.surface.frame.n, Vec3(0, 0, 1));
   BsdfSample s;
   EXPECT_FALSE(sample(back.bsdf, {0, 0, -1}, 0.5f, {0.5f, 0.5f}, Mode::radiance, s));
-}
-
-Material with_normal(const Vec3& n, uint32_t nested) {
-  Material m = parent(MaterialKind::normalmap, {nested});
-  m.map = Slot(glm::normalize(n) * 0.5f + 0.5f);
-  return m;
 }
 
 // Parts of a sum that bend or turn the normal each in their way: what they scatter, values times cosines, adds up.

@@ -9,7 +9,7 @@ using namespace kit;
 std::string emitter(const std::string& type, const std::string& inside = "") {
   return "<emitter type='" + type + "'>" + inside + "</emitter>";
 }
-Light read(const std::string& type, const std::string& inside = "") {
+Light light(const std::string& type, const std::string& inside = "") {
   return load_inside(emitter(type, inside)).lights.at(0);
 }
 const std::string turned =
@@ -30,8 +30,8 @@ TEST(Emitters, Area) {
 }
 
 TEST(Emitters, Constant) {
-  EXPECT_RGB(read("constant").radiance.value, 1, 1, 1, 0);
-  EXPECT_RGB(read("constant", "<spectrum name='radiance' value='0.3'/>").radiance.value, 0.3, 0.3, 0.3, 1e-6);
+  EXPECT_RGB(light("constant").radiance.value, 1, 1, 1, 0);
+  EXPECT_RGB(light("constant", "<spectrum name='radiance' value='0.3'/>").radiance.value, 0.3, 0.3, 0.3, 1e-6);
 }
 
 TEST(Emitters, Envmap) {
@@ -67,26 +67,26 @@ TEST(Emitters, EnvmapWithBadTexels) {
 }
 
 TEST(Emitters, Point) {
-  const Light l = read("point", "<point name='position' x='1' z='3'/><rgb name='intensity' value='4 5 6'/>");
+  const Light l = light("point", "<point name='position' x='1' z='3'/><rgb name='intensity' value='4 5 6'/>");
   EXPECT_EQ(l.kind, LightKind::point);
   EXPECT_RGB(l.position, 1, 0, 3, 0);
   EXPECT_RGB(l.radiance.value, 4, 5, 6, 1e-6);
-  EXPECT_RGB(read("point", turned).position, 1, 2, 3, 1e-6);
+  EXPECT_RGB(light("point", turned).position, 1, 2, 3, 1e-6);
 }
 
 TEST(Emitters, Spot) {
-  Light l = read("spot", turned + "<float name='cutoffAngle' value='60'/>");
+  Light l = light("spot", turned + "<float name='cutoffAngle' value='60'/>");
   EXPECT_EQ(l.kind, LightKind::spot);
   EXPECT_RGB(l.position, 1, 2, 3, 1e-6);
   EXPECT_RGB(l.direction, 1, 0, 0, 1e-6);
   EXPECT_NEAR(l.cos_cutoff, 0.5, 1e-6);
   EXPECT_NEAR(l.cos_beam, std::cos(pi / 4), 1e-6);
-  l = read("spot", "<float name='beam_width' value='0'/>");
+  l = light("spot", "<float name='beam_width' value='0'/>");
   EXPECT_NEAR(l.cos_cutoff, std::cos(20 * pi / 180), 1e-6);
   EXPECT_EQ(l.cos_beam, 1);
   EXPECT_SAYS(error_of(emitter("spot", "<float name='cutoff_angle' value='0'/>")), "cutoff_angle");
   EXPECT_SAYS(error_of(emitter("spot", "<float name='cutoff_angle' value='181'/>")), "cutoff_angle");
-  EXPECT_EQ(read("spot", "<float name='cutoff_angle' value='180'/>").cos_cutoff, -1);  // all around
+  EXPECT_EQ(light("spot", "<float name='cutoff_angle' value='180'/>").cos_cutoff, -1);  // all around
   EXPECT_SAYS(error_of(emitter("spot", "<float name='beam_width' value='30'/>")), "beam_width");
 }
 
@@ -112,7 +112,7 @@ TEST(Emitters, SpotThrowsItsTexture) {
   EXPECT_TRUE(sample_direct(s, 0, {2, 0.4f, -0.3f}, {0.5f, 0.5f}, d));
   EXPECT_FALSE(sample_direct(s, 0, {2, 0.4f, 0.3f}, {0.5f, 0.5f}, d));
   EXPECT_SAYS(error_of(emitter("spot", picture + "<float name='cutoff_angle' value='100'/>")), "less than 90");
-  EXPECT_RGB(read("spot", "<rgb name='texture' value='1 2 3'/><rgb name='intensity' value='2'/>").radiance.value, 2, 4,
+  EXPECT_RGB(light("spot", "<rgb name='texture' value='1 2 3'/><rgb name='intensity' value='2'/>").radiance.value, 2, 4,
              6, 1e-5);
 }
 
@@ -145,11 +145,11 @@ TEST(Emitters, Projector) {
 
 TEST(Emitters, Directional) {
   const Light l =
-      read("directional", "<vector name='direction' x='0' y='-2' z='0'/><rgb name='irradiance' value='2'/>");
+      light("directional", "<vector name='direction' x='0' y='-2' z='0'/><rgb name='irradiance' value='2'/>");
   EXPECT_EQ(l.kind, LightKind::directional);
   EXPECT_RGB(l.direction, 0, -1, 0, 1e-6);
   EXPECT_RGB(l.radiance.value, 2, 2, 2, 1e-6);
-  EXPECT_RGB(read("directional", turned).direction, 1, 0, 0, 1e-6);
+  EXPECT_RGB(light("directional", turned).direction, 1, 0, 0, 1e-6);
   EXPECT_SAYS(error_of(emitter("directional", "<vector name='direction' value='0, 0, 0'/>")), "zero vector");
 }
 
@@ -211,10 +211,10 @@ TEST(Emitters, SkiesOfNewFilesHaveZUp) {
       emitter("sunsky", sun_at("1 0.5 -0.2") + "<transform name='to_world'><rotate x='1' angle='-90'/></transform>"));
   EXPECT_RGB(environment(turned_up, 0, {0, 0.6f, 0.8f}) / environment(y, 0, {0, 0.6f, 0.8f}), 1, 1, 1, 1e-5);
   // North is +x, east +y: noon in Oslo again.
-  const Light oslo = read("sun",
-                          "<integer name='month' value='6'/><integer name='day' value='21'/><float name='hour' "
-                          "value='12'/><float name='minute' value='19'/><float name='timezone' value='1'/><float "
-                          "name='latitude' value='59.91'/><float name='longitude' value='10.75'/>");
+  const Light oslo = light("sun",
+                           "<integer name='month' value='6'/><integer name='day' value='21'/><float name='hour' "
+                           "value='12'/><float name='minute' value='19'/><float name='timezone' value='1'/><float "
+                           "name='latitude' value='59.91'/><float name='longitude' value='10.75'/>");
   EXPECT_RGB(-oslo.direction, -std::cos(glm::radians(53.5)), 0, std::sin(glm::radians(53.5)), 0.02);
 }
 
@@ -256,8 +256,8 @@ TEST(Emitters, UnknownOnesInShapes) {
 TEST(Emitters, LowSunIsRed) {
   for (const char* turbidity : {"3", "5.2", "8"})
     for (const char* height : {"0.05", "0.1", "0.3"}) {
-      const Rgb sun = read("sun", std::string("<float name='turbidity' value='") + turbidity +
-                                      "'/><vector name='sun_direction' x='1.5' y='0.5' z='" + height + "'/>")
+      const Rgb sun = light("sun", std::string("<float name='turbidity' value='") + turbidity +
+                                       "'/><vector name='sun_direction' x='1.5' y='0.5' z='" + height + "'/>")
                           .radiance.value;
       EXPECT_GT(sun.x, 0) << turbidity << ' ' << height;
       EXPECT_GE(sun.x, sun.y);

@@ -13,7 +13,7 @@ Mesh obj(const std::string& text, const MeshOptions& options = {.face_normals = 
   return mesh;
 }
 
-std::string error_of(const std::string& text) {
+std::string obj_error(const std::string& text) {
   try {
     parse_obj(text, "a.obj", {});
   } catch (const Error& e) {
@@ -23,7 +23,7 @@ std::string error_of(const std::string& text) {
   return "no error";
 }
 
-const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+const std::string three_vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
 TEST(MeshObj, reads_a_triangle_with_everything) {
   const Mesh m =
@@ -36,14 +36,14 @@ TEST(MeshObj, reads_a_triangle_with_everything) {
 }
 
 TEST(MeshObj, shares_vertices_with_equal_corners_only) {
-  const Mesh m = obj(three + "v 1 1 0\nvt 0 0\nvt 1 1\nf 1/1 2/1 3/1\nf 2/1 4/1 3/2\n");
+  const Mesh m = obj(three_vertices + "v 1 1 0\nvt 0 0\nvt 1 1\nf 1/1 2/1 3/1\nf 2/1 4/1 3/2\n");
   EXPECT_EQ(m.positions.size(), 5u);  // v3 with vt1 and with vt2
   EXPECT_EQ(m.triangles[1].x, m.triangles[0].y);
   EXPECT_NE(m.triangles[1].z, m.triangles[0].z);
 }
 
 TEST(MeshObj, many_distinct_corners_at_one_position) {
-  std::string text = three;
+  std::string text = three_vertices;
   for (int i = 0; i < 20000; ++i) text += "vt 0." + std::to_string(i) + " 0\nf 1/-1 2/1 3/1\n";
   EXPECT_EQ(obj(text).positions.size(), 20002u);
 }
@@ -64,21 +64,21 @@ TEST(MeshObj, blanks_comments_line_ends_and_continuations) {
 }
 
 TEST(MeshObj, passes_over_what_is_not_geometry) {
-  const Mesh m =
-      obj("mtllib a b.mtl\no name\ng a b\ns 1\nusemtl x\nvp 1 2\nl 1 2\np 1\nfoo\n" + three + "g\ns off\nf 1 2 3\n");
+  const Mesh m = obj("mtllib a b.mtl\no name\ng a b\ns 1\nusemtl x\nvp 1 2\nl 1 2\np 1\nfoo\n" + three_vertices +
+                     "g\ns off\nf 1 2 3\n");
   EXPECT_EQ(m.triangles.size(), 1u);
 }
 
 TEST(MeshObj, negative_indices_count_back_from_where_they_stand) {
-  const Mesh m = obj(three + "f -3 -2 -1\nv 5 5 5\nv 6 6 6\nv 7 7 8\nf -3 -2 -1\n");
+  const Mesh m = obj(three_vertices + "f -3 -2 -1\nv 5 5 5\nv 6 6 6\nv 7 7 8\nf -3 -2 -1\n");
   EXPECT_EQ(m.positions[m.triangles[0].x], Vec3(0, 0, 0));
   EXPECT_EQ(m.positions[m.triangles[1].x], Vec3(5, 5, 5));
 }
 
-TEST(MeshObj, indices_may_run_ahead) { EXPECT_EQ(obj("f 1 2 3\n" + three).positions[1], Vec3(1, 0, 0)); }
+TEST(MeshObj, indices_may_run_ahead) { EXPECT_EQ(obj("f 1 2 3\n" + three_vertices).positions[1], Vec3(1, 0, 0)); }
 
 TEST(MeshObj, corners_without_vt_or_vn) {
-  const Mesh m = obj(three + "vt 0.5 0.25\nvn 0 0 1\nf 1/1/1 2//1 3/1\nf 1 2/ 3/1/\n", MeshOptions());
+  const Mesh m = obj(three_vertices + "vt 0.5 0.25\nvn 0 0 1\nf 1/1/1 2//1 3/1\nf 1 2/ 3/1/\n", MeshOptions());
   EXPECT_EQ(m.uvs[m.triangles[0].x], Vec2(0.5f, 0.25f));
   EXPECT_EQ(m.uvs[m.triangles[0].y], Vec2(0, 0));
   for (const Vec3& n : m.normals) EXPECT_EQ(n, Vec3(0, 0, 1));
@@ -106,8 +106,8 @@ TEST(MeshObj, concave_quads_are_cut_inside) {
 }
 
 TEST(MeshObj, faces_without_area) {
-  EXPECT_EQ(obj(three + "f 1 2\nf 1\nf\n").triangles.size(), 0u);
-  const Mesh m = obj(three + "f 1 1 2\nf 1 2 2 1\n", MeshOptions());  // stay, with normals that are unit
+  EXPECT_EQ(obj(three_vertices + "f 1 2\nf 1\nf\n").triangles.size(), 0u);
+  const Mesh m = obj(three_vertices + "f 1 1 2\nf 1 2 2 1\n", MeshOptions());  // stay, with normals that are unit
   EXPECT_EQ(m.triangles.size(), 3u);
   EXPECT_EQ(m.normals[0], Vec3(0, 0, 1));
 }
@@ -118,18 +118,18 @@ TEST(MeshObj, colours) {
   EXPECT_EQ(m.colors[0], Rgb(1));
   EXPECT_EQ(m.colors[1], Rgb(0.5f, 0.25f, 1));
   EXPECT_EQ(m.colors[2], Rgb(0, 0, 1));  // x y z w r g b
-  EXPECT_TRUE(obj(three + "f 1 2 3").colors.empty());
+  EXPECT_TRUE(obj(three_vertices + "f 1 2 3").colors.empty());
 }
 
 TEST(MeshObj, flip_v) {
-  const std::string text = three + "vt 0.25 0.25\nf 1/1 2/1 3/1\n";
+  const std::string text = three_vertices + "vt 0.25 0.25\nf 1/1 2/1 3/1\n";
   EXPECT_EQ(obj(text).uvs[0], Vec2(0.25f, 0.25f));
   EXPECT_EQ(obj(text, {.flip_v = true}).uvs[0], Vec2(0.25f, 0.75f));
 }
 
 TEST(MeshObj, normals_of_the_file) {
   const std::string text =
-      three + "vn 0 3 4\nvn 0 0 0\nvn nan 0 1\nvn 1e200 0 1e200\nf 1//1 2//2 3//3\nf 1//4 2//2 3//3";
+      three_vertices + "vn 0 3 4\nvn 0 0 0\nvn nan 0 1\nvn 1e200 0 1e200\nf 1//1 2//2 3//3\nf 1//4 2//2 3//3";
   const Mesh m = obj(text, MeshOptions());
   EXPECT_EQ(m.normals[0], Vec3(0, 0.6f, 0.8f));
   EXPECT_EQ(m.normals[1], Vec3(0, 0, 1));  // zero: that of the faces
@@ -139,9 +139,9 @@ TEST(MeshObj, normals_of_the_file) {
 }
 
 // A floor and a wall with a common edge, the z axis.
-const std::string corner = "v 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nv 0 1 0\nv 0 1 1\n%f 1 2 3 4\n%f 1 5 6 2\n";
+const std::string open_corner = "v 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nv 0 1 0\nv 0 1 1\n%f 1 2 3 4\n%f 1 5 6 2\n";
 std::string cornered(const std::string& first, const std::string& second) {
-  std::string text = corner;
+  std::string text = open_corner;
   text.replace(text.find('%'), 1, first);
   return text.replace(text.find('%'), 1, second);
 }
@@ -181,14 +181,18 @@ TEST(MeshObj, one_group_alone) {
 }
 
 TEST(MeshObj, equal_corners_are_one_or_not) {
-  const std::string doubled = corner.substr(0, corner.find('%')) + "v -0 0 0\nv 0 -0 1\nf 1 2 3 4\nf 7 5 6 8\n";
+  const std::string doubled =
+      open_corner.substr(0, open_corner.find('%')) + "v -0 0 0\nv 0 -0 1\nf 1 2 3 4\nf 7 5 6 8\n";
   EXPECT_FALSE(smooth(doubled, {}));
   EXPECT_TRUE(smooth(doubled, {.weld = true}));
   // uv counts, equal normals of the file are as they are
   EXPECT_EQ(
-      obj(three + three + "vt 0 0\nvt 0 0\nvt 1 0\nf 1/1 2/1 3/1\nf 4/2 5/3 6/3\n", {.weld = true}).positions.size(),
+      obj(three_vertices + three_vertices + "vt 0 0\nvt 0 0\nvt 1 0\nf 1/1 2/1 3/1\nf 4/2 5/3 6/3\n", {.weld = true})
+          .positions.size(),
       5u);
-  EXPECT_EQ(obj(three + three + "vn 0 0 1\nf 1//1 2//1 3//1\nf 4//1 5//1 6//1\n", {.weld = true}).positions.size(), 6u);
+  EXPECT_EQ(obj(three_vertices + three_vertices + "vn 0 0 1\nf 1//1 2//1 3//1\nf 4//1 5//1 6//1\n", {.weld = true})
+                .positions.size(),
+            6u);
 }
 
 TEST(MeshObj, empty_files_are_empty_meshes) {
@@ -197,25 +201,26 @@ TEST(MeshObj, empty_files_are_empty_meshes) {
 }
 
 TEST(MeshObj, errors_name_file_line_and_culprit) {
-  EXPECT_EQ(error_of("v 1 2\n"), "a.obj:1: v has 2 coordinates; it needs x y z");
-  EXPECT_EQ(error_of("\n\nv 1,5 2 3\n"), "a.obj:3: \"1,5\" is not a number");
-  EXPECT_EQ(error_of("v 1 2 \\\n z\n"), "a.obj:2: \"z\" is not a number");
-  EXPECT_NE(error_of("v 0 0 inf").find("a.obj:1: a coordinate of v is not finite"), std::string::npos);
-  EXPECT_NE(error_of("v 0 0 1e39").find("not finite"), std::string::npos);
-  EXPECT_NE(error_of("vt nan 0").find("a.obj:1: a coordinate of vt is not finite"), std::string::npos);
-  EXPECT_NE(error_of("vt").find("a.obj:1: vt has no"), std::string::npos);
-  EXPECT_NE(error_of("vn 1 2").find("a.obj:1: vn has 2"), std::string::npos);
-  EXPECT_EQ(error_of(three + "\nf 1 2 4\n"), "a.obj:5: f names v 4 of 3; is the file whole?");
+  EXPECT_EQ(obj_error("v 1 2\n"), "a.obj:1: v has 2 coordinates; it needs x y z");
+  EXPECT_EQ(obj_error("\n\nv 1,5 2 3\n"), "a.obj:3: \"1,5\" is not a number");
+  EXPECT_EQ(obj_error("v 1 2 \\\n z\n"), "a.obj:2: \"z\" is not a number");
+  EXPECT_NE(obj_error("v 0 0 inf").find("a.obj:1: a coordinate of v is not finite"), std::string::npos);
+  EXPECT_NE(obj_error("v 0 0 1e39").find("not finite"), std::string::npos);
+  EXPECT_NE(obj_error("vt nan 0").find("a.obj:1: a coordinate of vt is not finite"), std::string::npos);
+  EXPECT_NE(obj_error("vt").find("a.obj:1: vt has no"), std::string::npos);
+  EXPECT_NE(obj_error("vn 1 2").find("a.obj:1: vn has 2"), std::string::npos);
+  EXPECT_EQ(obj_error(three_vertices + "\nf 1 2 4\n"), "a.obj:5: f names v 4 of 3; is the file whole?");
   for (const char* rest : {"f", "f ", "f 1", "f 1 2"})
-    EXPECT_NE(error_of(three + "f 1 2 3\n" + rest).find("the file ends in a face of "), std::string::npos) << rest;
-  EXPECT_EQ(error_of(three + "f 1 2\n"), "no error") << "a line may have no area";
-  EXPECT_EQ(error_of(three + "f 1 2 3"), "no error");
-  EXPECT_EQ(error_of(three + "f 1/1 2/1 3/1\n"), "a.obj:4: f names vt 1 of 0; is the file whole?");
-  EXPECT_EQ(error_of(three + "f 1//9 2//1 3//1\n"), "a.obj:4: f names vn 9 of 0; is the file whole?");
-  EXPECT_EQ(error_of(three + "f 1 2 0\n"), "a.obj:4: \"0\": there is no such v; 3 so far");
-  EXPECT_EQ(error_of(three + "f 1 2 -4\n"), "a.obj:4: \"-4\": there is no such v; 3 so far");
+    EXPECT_NE(obj_error(three_vertices + "f 1 2 3\n" + rest).find("the file ends in a face of "), std::string::npos)
+        << rest;
+  EXPECT_EQ(obj_error(three_vertices + "f 1 2\n"), "no error") << "a line may have no area";
+  EXPECT_EQ(obj_error(three_vertices + "f 1 2 3"), "no error");
+  EXPECT_EQ(obj_error(three_vertices + "f 1/1 2/1 3/1\n"), "a.obj:4: f names vt 1 of 0; is the file whole?");
+  EXPECT_EQ(obj_error(three_vertices + "f 1//9 2//1 3//1\n"), "a.obj:4: f names vn 9 of 0; is the file whole?");
+  EXPECT_EQ(obj_error(three_vertices + "f 1 2 0\n"), "a.obj:4: \"0\": there is no such v; 3 so far");
+  EXPECT_EQ(obj_error(three_vertices + "f 1 2 -4\n"), "a.obj:4: \"-4\": there is no such v; 3 so far");
   for (const char* f : {"f a b c", "f 1 2 3x", "f 1.5 2 3", "f 1 2 3/1/1/1", "f 1 2 99999999999999999999", "f 1 2 ++3"})
-    EXPECT_NE(error_of(three + f).find("a.obj:4: \""), std::string::npos) << f;
+    EXPECT_NE(obj_error(three_vertices + f).find("a.obj:4: \""), std::string::npos) << f;
 }
 
 TEST(MeshObj, missing_files) {

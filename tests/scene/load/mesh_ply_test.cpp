@@ -13,7 +13,7 @@ Mesh ply(const std::string& bytes, const MeshOptions& options = {.face_normals =
   return mesh;
 }
 
-std::string error_of(const std::string& bytes) {
+std::string ply_error(const std::string& bytes) {
   try {
     parse_ply(kit::as_bytes(bytes), "a.ply", {});
   } catch (const Error& e) {
@@ -170,7 +170,7 @@ TEST(MeshPly, faces_may_come_before_vertices) {
 
 TEST(MeshPly, errors_say_what_and_where) {
   const auto has = [](const std::string& text, const std::string& part) {
-    EXPECT_NE(error_of(text).find(part), std::string::npos) << error_of(text);
+    EXPECT_NE(ply_error(text).find(part), std::string::npos) << ply_error(text);
   };
   const std::string body = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
   has("", "a.ply:1: PLY header: no end_header");
@@ -202,10 +202,10 @@ TEST(MeshPly, errors_say_what_and_where) {
 
 TEST(MeshPly, promises_beyond_the_file_allocate_nothing) {
   const std::string head = "ply\nformat binary_little_endian 1.0\nelement vertex 1000000000000\n" + xyz;
-  EXPECT_NE(error_of(head + "end_header\nabc").find("1000000000000 x vertex"), std::string::npos);
+  EXPECT_NE(ply_error(head + "end_header\nabc").find("1000000000000 x vertex"), std::string::npos);
   const std::string faces = "ply\nformat binary_little_endian 1.0\nelement vertex 0\n" + xyz +
                             "element face 1\nproperty list uint int vertex_indices\nend_header\n\xff\xff\xff\xff";
-  EXPECT_NE(error_of(faces).find("a list of 4294967295 entries"), std::string::npos);
+  EXPECT_NE(ply_error(faces).find("a list of 4294967295 entries"), std::string::npos);
 }
 
 TEST(MeshPly, reads_the_scenes_of_the_sources) {

@@ -12,7 +12,7 @@ Mesh read(const std::string& bytes, int index = 0, const MeshOptions& options = 
   return mesh;
 }
 
-std::string error_of(const std::string& bytes, int index = 0) {
+std::string serialized_error(const std::string& bytes, int index = 0) {
   try {
     parse_serialized(kit::as_bytes(bytes), "a.serialized", index, {});
   } catch (const Error& e) {
@@ -70,9 +70,9 @@ TEST(MeshSerialized, several_meshes) {
     expect_same(read(file, 0), a);
     expect_same(read(file, 1, faceted), b);
     expect_same(read(file, 2, faceted), c);
-    EXPECT_NE(error_of(file, 3).find("shape_index 3, but the file holds 3 meshes (0 to 2)"), std::string::npos);
-    EXPECT_NE(error_of(file, -1).find("shape_index -1 is negative"), std::string::npos);
-    EXPECT_NE(error_of(file, 1 << 30).find("holds 3 meshes"), std::string::npos);
+    EXPECT_NE(serialized_error(file, 3).find("shape_index 3, but the file holds 3 meshes (0 to 2)"), std::string::npos);
+    EXPECT_NE(serialized_error(file, -1).find("shape_index -1 is negative"), std::string::npos);
+    EXPECT_NE(serialized_error(file, 1 << 30).find("holds 3 meshes"), std::string::npos);
   }
 }
 
@@ -89,7 +89,7 @@ TEST(MeshSerialized, a_large_mesh_survives) {
 
 TEST(MeshSerialized, errors) {
   const auto has = [](const std::string& bytes, const std::string& part, int index = 0) {
-    EXPECT_NE(error_of(bytes, index).find(part), std::string::npos) << error_of(bytes, index);
+    EXPECT_NE(serialized_error(bytes, index).find(part), std::string::npos) << serialized_error(bytes, index);
   };
   const std::string payload = kit::payload_of<float>(make_rectangle(), 4);
   const std::string file = kit::serialized_of({payload, payload}, 4);

@@ -12,7 +12,7 @@ namespace {
 
 using namespace kit;
 
-MtlMaterial read(const std::string& lines) { return parse_mtl("newmtl m\n" + lines, "a.mtl").materials.at(0); }
+MtlMaterial material(const std::string& lines) { return parse_mtl("newmtl m\n" + lines, "a.mtl").materials.at(0); }
 
 std::string mtl_error(const std::string& text) {
   try {
@@ -25,7 +25,7 @@ std::string mtl_error(const std::string& text) {
 }
 
 TEST(Mtl, NumbersAndColours) {
-  const MtlMaterial m = read(" Kd .1 .2 .3 # comment\r\n\tKs 0.5\r\nNs 60\nNi 1.4\nillum 7\nd 0.75\n");
+  const MtlMaterial m = material(" Kd .1 .2 .3 # comment\r\n\tKs 0.5\r\nNs 60\nNi 1.4\nillum 7\nd 0.75\n");
   EXPECT_EQ(m.name, "m");
   EXPECT_EQ(m.diffuse, Rgb(0.1f, 0.2f, 0.3f));
   EXPECT_EQ(m.specular, Rgb(0.5f));
@@ -34,26 +34,26 @@ TEST(Mtl, NumbersAndColours) {
   EXPECT_EQ(m.ior, 1.4f);
   EXPECT_EQ(m.illum, 7);
   EXPECT_EQ(m.opacity, 0.75f);
-  EXPECT_EQ(read("Tr 0.9\nd 0.5\nTr 0.9").opacity, 0.5f) << "some exporters mean d by Tr";
-  EXPECT_EQ(read("Tr 0.9").opacity, 1);
-  EXPECT_EQ(read("").illum, 0);
-  EXPECT_EQ(read("").diffuse, Rgb(0));
-  EXPECT_EQ(read("d -halo 0.5").opacity, 0.5f);
-  EXPECT_EQ(read("Ns -1.960784").exponent, 0);
+  EXPECT_EQ(material("Tr 0.9\nd 0.5\nTr 0.9").opacity, 0.5f) << "some exporters mean d by Tr";
+  EXPECT_EQ(material("Tr 0.9").opacity, 1);
+  EXPECT_EQ(material("").illum, 0);
+  EXPECT_EQ(material("").diffuse, Rgb(0));
+  EXPECT_EQ(material("d -halo 0.5").opacity, 0.5f);
+  EXPECT_EQ(material("Ns -1.960784").exponent, 0);
 }
 
 TEST(Mtl, Maps) {
-  MtlMap map = read("map_Kd wood with blanks.png").map_diffuse;
+  MtlMap map = material("map_Kd wood with blanks.png").map_diffuse;
   EXPECT_EQ(map.file, "wood with blanks.png");
   EXPECT_EQ(map.scale, Vec2(1));
-  map = read("map_Kd -blendu on -s 2 3 1 -o .5 -t 1 1 -mm 0 1 -clamp on -imfchan g 4 walls.png").map_diffuse;
+  map = material("map_Kd -blendu on -s 2 3 1 -o .5 -t 1 1 -mm 0 1 -clamp on -imfchan g 4 walls.png").map_diffuse;
   EXPECT_EQ(map.file, "4 walls.png");
   EXPECT_EQ(map.scale, Vec2(2, 3));
   EXPECT_EQ(map.offset, Vec2(0.5f, 0));
   EXPECT_TRUE(map.clamp);
   EXPECT_EQ(map.channel, Channel::green);
-  EXPECT_EQ(read("map_bump -bm 0.25 -s 1 1 7.png").map_bump.height, 0.25f);
-  EXPECT_EQ(read("map_bump -bm 0.25 -s 1 1 7.png").map_bump.file, "7.png");
+  EXPECT_EQ(material("map_bump -bm 0.25 -s 1 1 7.png").map_bump.height, 0.25f);
+  EXPECT_EQ(material("map_bump -bm 0.25 -s 1 1 7.png").map_bump.file, "7.png");
 }
 
 TEST(Mtl, WhatIsNotUsedIsListed) {
