@@ -275,9 +275,11 @@ Work prepare(const AnimateArguments& a) {
   if (a.fps && a.video.empty()) throw Error("--fps: is of a film; add --video OUT.mp4, or leave it out");
   if (!a.video.empty()) check_video(a.video);
   const FrameRange& r = w.shooting.timeline.frames;
-  // Finds out what times there are, and that both ends can be loaded.
+  // Finds out what times there are, and that both ends can be loaded, and what is between: there a parameter that is
+  // to be whole may not be.
   const std::shared_ptr<const Scene> zero = load_frame(w.shooting, 0), last = load_frame(w.shooting, r.last),
                                      scene = load_frame(w.shooting, r.first);
+  if (r.first + 1 < r.last) load_frame(w.shooting, r.first + 1);
   for (const auto& one : {zero, scene, last}) check_apart(a, r, *one, w.shooting.cache);
   if (!a.at.empty() && scene->hints.first_time > scene->hints.last_time)
     throw Error(fmt::format("--at {}: nothing in the scene has an <animation>; leave it out", a.at));
@@ -310,7 +312,13 @@ void run_animate(const AnimateArguments& a) {
     say(stderr, "ajar: note: {} of {} frames are there already\n", there, r.last - r.first + 1);
   w.began = wall_seconds();
   catch_stop();
-  if (!w.to_do.empty()) render_frames(w);
+  try {
+    if (!w.to_do.empty()) render_frames(w);
+  } catch (const Interrupted&) {
+    if (!a.quiet) clear_line();
+    if (there + w.done > 0) write_figures(w);
+    throw;
+  }
   if (!a.quiet) clear_line();
   // An error that only the figures have, of a reference elsewhere in the folder, say, does not cost the film.
   write_each({[&] { write_figures(w); }, [&] { write_film(w); }});

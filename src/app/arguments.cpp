@@ -32,7 +32,9 @@ LoadOptions load_options(const std::vector<std::string>& defines, bool lenient, 
   for (const std::string& d : defines) {
     const size_t equals = d.find('=');
     if (equals == 0 || equals == std::string::npos) throw Error(fmt::format("-D {}: write -D name=value", d));
-    o.defines[d.substr(0, equals)] = d.substr(equals + 1);
+    const std::string name = d.substr(0, equals);
+    if (!o.defines.emplace(name, d.substr(equals + 1)).second)
+      throw Error(fmt::format("-D {}: {} is given twice; leave one of them out", d, name));
   }
   return o;
 }

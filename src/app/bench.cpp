@@ -130,7 +130,7 @@ void add_bench(CLI::App& app) {
   c->add_option("-o,--out", a->out, "folder for results; finished runs in it are kept and not run again")->required();
   c->add_flag("--quick", a->quick, "the suite's smaller version of itself");
   c->add_option("--references", a->references,
-                "folder of references that are made once (default: references beside the suite)");
+                "folder of references that are made once (default: the folder references beside the suite)");
   add_threads(*c, a->threads);
   c->add_flag("-q,--quiet", a->quiet, "no progress, no notes");
   c->callback([a] { run_bench_command(*a); });

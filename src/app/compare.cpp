@@ -73,7 +73,10 @@ void add_compare(CLI::App& app) {
   const auto arguments = std::make_shared<Arguments>();
   command->add_option("image", arguments->image, "Image to judge (EXR, or anything that OpenImageIO reads)")
       ->required();
-  command->add_option("reference", arguments->reference, "Image that is taken for right, of the same size")->required();
+  command
+      ->add_option("reference", arguments->reference,
+                   "Image that is taken for right, of the same size (with --crop: that has the window, too)")
+      ->required();
   command->add_option(
       "--variance", arguments->variance,
       "Variance of the image's pixel values (channels Variance.R, .G, .B or R, G, B); adds the z-test, as do "

@@ -248,6 +248,9 @@ RenderOptions render_options(const RenderArguments& a, Scene& scene, bool planne
   o.threads = a.threads;
   set_max_depth(a.max_depth, scene, o);
   o.roulette_depth = a.roulette_depth;
+  if (a.heuristic == "balance" && !weighs_strategies(o.integrator))
+    throw Error(fmt::format("--heuristic balance: {} has one way to each path, and nothing to weigh; leave it out",
+                            o.integrator));
   o.heuristic = a.heuristic == "balance" ? Heuristic::balance : Heuristic::power;
   o.sampler = a.sampler == "independent" ? SamplerKind::independent : SamplerKind::sobol;
   o.limit_fireflies = a.limit_fireflies;

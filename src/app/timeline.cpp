@@ -61,6 +61,7 @@ FrameRange parse_frames(const std::string& written, int count) {
   const bool is_range = take(rest, '-');
   if (is_range) r.last = take_integer(rest);
   const bool has_count = take(rest, '/');
+  const int keyed = count;
   if (has_count) count = take_integer(rest);
   if (!rest.empty() || r.first < 0 || r.last < 0 || count < 0) throw wrong("not a range of frames; " + how);
   if (!is_range && !has_count) {  // a number of frames
@@ -70,6 +71,7 @@ FrameRange parse_frames(const std::string& written, int count) {
                       r.first < count ? fmt::format(", or write {}/{} for that frame alone", r.first, count) : ""));
     count = r.first, r.first = 0, r.last = count - 1;
   }
+  if (keyed > 0 && count != keyed) throw wrong(fmt::format("the keyframes say {}; write that, or leave it out", keyed));
   if (is_range && count == 0)
     throw wrong(fmt::format("how many are there in all? Write {}/48 for a part of 48", written));
   if (count < 1 || count > most_frames) throw wrong(fmt::format("an animation has from 1 to {} frames", most_frames));

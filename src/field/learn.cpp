@@ -14,12 +14,13 @@ namespace {
 
 // Share of the memory up to which cells are added, and strata divided: cells are few, their strata go on growing, and a
 // lesson does not know how much it is about to add. Coarse cells are always let in: without one, what has moved to
-// where nothing was (a door's leaf) would not be guided at all.
-constexpr double for_cells = 0.4, for_strata = 0.75;
+// where nothing was (a door's leaf) would not be guided at all. Pairs of regions have a share of their own.
+constexpr double for_cells = 0.4, for_strata = 0.75, for_views = 0.15;
 constexpr int coarse_levels = 3;
 bool is_left(const Fields& fields, double share, const LearnOptions& options) {
   return double(bytes(fields)) < share * double(options.memory);
 }
+double memory_of_views(const LearnOptions& options) { return for_views * double(options.memory); }
 
 struct Rebuild {
   Structure structure = Structure::adaptive;
@@ -189,8 +190,9 @@ void add_cells(Fields& fields, const Sightings& sightings, const LearnOptions& o
   std::vector<std::pair<CellKey, Sighting>> sorted(sightings.begin(), sightings.end());
   std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   const bool adaptive = fields.structure == Structure::adaptive;
+  const uint32_t most = affordable_regions(most_regions, memory_of_views(options));
   for (const auto& [key, seen] : sorted) {
-    const double share = !adaptive ? 1 : level_of(key) < coarse_levels ? for_strata : for_cells;
+    const double share = !adaptive ? 1 - for_views : level_of(key) < coarse_levels ? for_strata : for_cells;
     if (!is_left(fields, share, options)) return;
     if (seen.count < 4) continue;
     const CellKey above = parent_of(key);
@@ -199,7 +201,7 @@ void add_cells(Fields& fields, const Sightings& sightings, const LearnOptions& o
     if (!is_finite(n)) continue;
     const uint32_t id = uint32_t(fields.cells.size());
     if (parent == none)
-      fields.cells.push_back({key, make_frame(n), middle_of(fields.table, key), 0, fields.regions++ % most_regions});
+      fields.cells.push_back({key, make_frame(n), middle_of(fields.table, key), 0, fields.regions++ % most});
     else
       fields.cells.push_back(
           {key, fields.cells[parent].frame, middle_of(fields.table, key), 0, fields.cells[parent].region});
@@ -213,7 +215,7 @@ void add_cells(Fields& fields, const Sightings& sightings, const LearnOptions& o
 // Cells of patches that the memory has room for, with their places in the hash table.
 double affordable_cells(size_t memory) {
   constexpr double strata = (1 + zones) * (sizeof(StrataNode) + 32 * sizeof(Short));
-  return double(memory) /
+  return (1 - for_views) * double(memory) /
          (2 * (strata + sizeof(FieldCell)) + sizeof(Cell) + 3 * sizeof(CellTable::Slot) + sizeof(Probe));
 }
 
@@ -314,7 +316,9 @@ Fields learn(const Fields& fields, const Training& training, const Sightings& si
   }
   next.regions = fields.regions;
   add_cells(next, sightings, options);
-  next.views = learn_views(fields.views, training.views, next.regions, 0.9f);
+  next.views =
+      learn_views(fields.views, training.views,
+                  std::max(fields.views.regions, affordable_regions(next.regions, memory_of_views(options))), 0.9f);
   restrict_to(next, options.guided);
   return next;
 }

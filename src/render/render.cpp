@@ -258,6 +258,10 @@ bool has_strategies(const std::string& integrator) {
   const Trace trace = find_integrator(integrator).trace;
   return trace != trace_path && trace != trace_light;
 }
+bool weighs_strategies(const std::string& integrator) {
+  const Trace trace = find_integrator(integrator).trace;
+  return trace != trace_light && trace != trace_photon;
+}
 
 // Where no light vertices are joined, which bring what a cosine lobe finds badly: strata that could halve its variance
 // guide (G14).

@@ -32,8 +32,10 @@ struct Embedded {
 std::string read_bytes(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream bytes;
-  bytes << file.rdbuf();
-  if (!file || bytes.fail()) throw Error(fmt::format("{}: cannot be read; check its permissions", path.string()));
+  const bool has_bytes = file.peek() != std::ifstream::traits_type::eof();  // << of none would be a failure
+  if (has_bytes) bytes << file.rdbuf();
+  if (!file.is_open() || file.bad() || bytes.fail())
+    throw Error(fmt::format("{}: cannot be read; check its permissions", path.string()));
   return bytes.str();
 }
 

@@ -56,6 +56,10 @@ std::string if_it_merges(const RenderOptions& o) {
     return fmt::format("{} merges nothing; leave it out, or take vcm, guided-vcm or photon", o.integrator);
   return o.integrator == "photon" && !(o.merge_radius > 0) ? "is 0; photon needs a radius above 0" : "";
 }
+std::string if_it_weighs(const RenderOptions& o) {
+  if (weighs_strategies(o.integrator)) return {};
+  return fmt::format("{} has one way to each path, and nothing to weigh; leave it out", o.integrator);
+}
 std::string if_it_gathers(const RenderOptions& o) {
   if (o.integrator == "photon") return {};
   return fmt::format("{} has no photon map to gather from; leave it out, or take photon", o.integrator);
@@ -78,7 +82,7 @@ const Option options_table[] = {
      [](RenderOptions& o, const Element& e) {
        o.heuristic = choice(e, heuristics) == 0 ? Heuristic::power : Heuristic::balance;
      },
-     [](const RenderOptions& o) { return Json(heuristics[o.heuristic == Heuristic::power ? 0 : 1]); }},
+     [](const RenderOptions& o) { return Json(heuristics[o.heuristic == Heuristic::power ? 0 : 1]); }, if_it_weighs},
     {"sampler",
      [](RenderOptions& o, const Element& e) {
        o.sampler = choice(e, samplers) == 0 ? SamplerKind::sobol : SamplerKind::independent;
@@ -175,7 +179,8 @@ std::string read_name(const Element& e, std::set<std::string>& names) {
   const std::string name = text(given);
   constexpr const char* letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.+";
   if (name.find_first_not_of(letters) != std::string::npos || name[0] == '.')
-    fail(given, "names become file names: use letters, digits, - _ + and dots only");
+    fail(given, "names become file names: use letters, digits, - _ + and dots only, no dot first");
+  if (name == "reference") fail(given, "the reference's image has this name; choose a different one");
   if (!names.insert(name).second) fail(given, "another has this name; choose a different one");
   return name;
 }

@@ -269,6 +269,7 @@ TEST_F(Animate, KeyframesComeFromAFile) {
   EXPECT_EQ(frames("5"), "--frames 5: the keyframes say 3; leave it out");
   EXPECT_EQ(frames("2"), "--frames 2: the keyframes say 3; leave it out, or write 2/3 for that frame alone");
   EXPECT_EQ(frames("2/3"), "");
+  EXPECT_EQ(frames("1-2/5"), "--frames 1-2/5: the keyframes say 3; write that, or leave it out");
 }
 
 TEST_F(Animate, KeysThatNoFrameReachesAreTold) {
@@ -310,6 +311,22 @@ TEST_F(Animate, ScenesMoveByThemselves) {
   EXPECT_EQ(pixels("all_1.exr"), pixels("part/p_0.exr"));
   EXPECT_EQ(pixels("all_2.exr"), pixels("part/p_2.exr"));
   EXPECT_SAYS(error_of([&] { animate("part/p", {"--at", "2..3.0001"}); }), "p_0.exr: is of another animation");
+}
+
+// Frame 0 and the last have whole numbers, what is between has not: that is told before any of them is rendered.
+TEST_F(Animate, WholeNumbersAreWholeInEveryFrame) {
+  write("deep.xml", R"(<scene version="3.0.0"><default name="depth" value="2"/>
+    <integrator type="path"><integer name="max_depth" value="$depth"/></integrator>
+    <sensor type="perspective"><film type="hdrfilm"><integer name="width" value="8"/><integer name="height" value="8"/>
+      </film></sensor><shape type="sphere"><emitter type="area"/></shape></scene>)");
+  const auto animate = [&](const char* frames) {
+    run_command_line({"animate", in("deep.xml"), "-q", "--spp", "1", "--frames", frames, "-D", "depth=2..4", "-o",
+                      in("d/d_%d.exr")});
+  };
+  EXPECT_SAYS(error_of([&] { animate("5"); }), "2.5 should be a whole number");
+  EXPECT_FALSE(fs::exists(in("d")));
+  animate("3");
+  EXPECT_TRUE(fs::exists(in("d/d_2.exr")));
 }
 
 TEST_F(Animate, SaysWhatIsWrong) {

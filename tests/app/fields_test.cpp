@@ -100,6 +100,11 @@ TEST_F(FieldsUsed, GuideAndMemoryAreObeyed) {
   const auto small = render({"--spp", "9", "--field-memory", "64K"});
   EXPECT_EQ(small["options"]["field_memory"], 64 << 10);
   EXPECT_LT(small["fields"]["cells"], both["fields"]["cells"]);
+  for (const char* structure : {"adaptive", "grid", "probes"}) {
+    const auto json =
+        render({"--spp", "32", "--plan", "all", "--field-memory", "128K", "--field-structure", structure});
+    EXPECT_LT(json["fields"]["bytes"], 210'000) << structure;
+  }
 }
 
 TEST_F(FieldsUsed, StructuresAndTrainingAreRecorded) {

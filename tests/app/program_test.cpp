@@ -121,10 +121,22 @@ TEST_F(Program, FilmsThatAreInterruptedSaySo) {
   for (const auto& entry : fs::directory_iterator(folder)) EXPECT_NE(entry.path().extension(), ".mp4") << entry.path();
 }
 
+TEST_F(Program, InterruptedAnimationsTellOfTheFramesThatAreThere) {
+  const std::string frames = "\"$ajar\" animate box.xml --frames 100000 -D back=-1..-2 --spp 1 --size 8x8 -q ";
+  EXPECT_EQ(run(stopped(frames + "--integrator path -o f/f_%d.exr", "f/f_0.exr", "INT")), 130) << said();
+  EXPECT_NE(said().find("the same command goes on from there"), std::string::npos) << said();
+  for (const char* name : {"f/animation.json", "f/animation.csv", "f/animation.svg"})
+    EXPECT_TRUE(is_there(name)) << name;
+}
+
 TEST_F(Program, MistypedOptionsAreToldFirst) {
   for (const auto& [words, says] : {std::pair{"render --foo", "ajar: --foo: there is no such option; see ajar render"},
                                     {"--foo", "ajar: --foo: there is no such option; see ajar --help"},
                                     {"render --fo box.xml", "ajar: --fo: there is no such option"},
+                                    {"render box.xml -o a.exr -D x=1 -D x=2", "ajar: -D x=2: x is given twice"},
+                                    {"plan box.xml -D x=1 -D x=2", "ajar: -D x=2: x is given twice"},
+                                    {"render box.xml -o a.exr --integrator light --heuristic balance",
+                                     "ajar: --heuristic balance: light has one way to each path"},
                                     {"render box.xml --time 5s --time 6s", "ajar: --time: given twice; leave one"}}) {
     EXPECT_EQ(run("\"$ajar\" " + std::string(words)), 2) << words;
     EXPECT_EQ(said().find(says), 0u) << words << ": " << said();

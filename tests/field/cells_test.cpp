@@ -10,7 +10,7 @@
 namespace ajar {
 namespace {
 
-const Vec3 up(0, 1, 0);
+const Vec3 north(0, 1, 0);
 
 CellTable table() { return make_cell_table(Vec3(1, 2, 3), 6); }
 
@@ -22,18 +22,18 @@ Vec3 centre_of_cube(const CellTable& t, int x, int y, int z) {
 TEST(Cells, JitterWithinACellDoesNotMatter) {
   const CellTable t = table();
   const Vec3 centre = centre_of_cube(t, 3, 4, 5);
-  const CellKey key = find(t, centre, up).missing;
+  const CellKey key = find(t, centre, north).missing;
   Sampler sampler = make_sampler(SamplerKind::independent, 1, Side::camera, 0, 0);
   for (int i = 0; i < 10000; ++i) {
     const Vec2 a = sampler.next2(), b = sampler.next2(), c = sampler.next2();
     const Vec3 p = centre + t.width * 0.499f * (2.0f * Vec3(a, b.x) - 1.0f);
-    const Vec3 n = glm::normalize(up + 0.2f * (2.0f * Vec3(b.y, c) - 1.0f));
+    const Vec3 n = glm::normalize(north + 0.2f * (2.0f * Vec3(b.y, c) - 1.0f));
     ASSERT_EQ(find(t, p, n).missing, key);
   }
   for (int axis = 0; axis < 3; ++axis) {
     Vec3 p = centre;
     p[axis] += 0.501f * t.width;
-    EXPECT_NE(find(t, p, up).missing, key) << "the next cube";
+    EXPECT_NE(find(t, p, north).missing, key) << "the next cube";
   }
 }
 
@@ -46,7 +46,7 @@ TEST(Cells, NormalsAndPlacesHaveTheirOwn) {
         if (x != 0 || y != 0 || z != 0)
           keys.insert(find(t, Vec3(1, 2, 3), glm::normalize(Vec3(float(x), float(y), float(z)))).missing);
   EXPECT_EQ(keys.size(), 26u);
-  for (int i = 0; i < 1000; ++i) keys.insert(find(t, centre_of_cube(t, i % 10, i / 10 % 10, i / 100), up).missing);
+  for (int i = 0; i < 1000; ++i) keys.insert(find(t, centre_of_cube(t, i % 10, i / 10 % 10, i / 100), north).missing);
   EXPECT_EQ(keys.size(), 26u + 1000 - 1) << "one of them is the cube of the first 26";
   EXPECT_FALSE(keys.contains(0));
 }
@@ -54,29 +54,29 @@ TEST(Cells, NormalsAndPlacesHaveTheirOwn) {
 TEST(Cells, DividedOnesAnswerWherePartsAreUnknown) {
   CellTable t = table();
   const Vec3 centre = centre_of_cube(t, 3, 4, 5), low = centre - 0.2f * t.width, high = centre + 0.2f * t.width;
-  Place at = find(t, low, up);
+  Place at = find(t, low, north);
   EXPECT_EQ(at.cell, none);
   const CellKey whole = at.missing;
   EXPECT_EQ(level_of(whole), 0);
   EXPECT_EQ(parent_of(whole), 0u);
   insert(t, whole, 7);
-  at = find(t, low, up);
+  at = find(t, low, north);
   EXPECT_EQ(at.cell, 7u);
   EXPECT_EQ(at.missing, 0u);
 
   set_divided(t, whole);
-  at = find(t, low, up);
+  at = find(t, low, north);
   EXPECT_EQ(at.cell, 7u);
   EXPECT_EQ(level_of(at.missing), 1);
   EXPECT_EQ(parent_of(at.missing), whole);
   const CellKey part = at.missing;
   insert(t, part, 8);
-  EXPECT_EQ(find(t, low, up).cell, 8u);
-  EXPECT_EQ(find(t, low, up).missing, 0u);
-  EXPECT_EQ(find(t, high, up).cell, 7u);
-  EXPECT_NE(find(t, high, up).missing, part);
-  EXPECT_EQ(parent_of(find(t, high, up).missing), whole);
-  EXPECT_EQ(find(t, low, -up).cell, none) << "the other side";
+  EXPECT_EQ(find(t, low, north).cell, 8u);
+  EXPECT_EQ(find(t, low, north).missing, 0u);
+  EXPECT_EQ(find(t, high, north).cell, 7u);
+  EXPECT_NE(find(t, high, north).missing, part);
+  EXPECT_EQ(parent_of(find(t, high, north).missing), whole);
+  EXPECT_EQ(find(t, low, -north).cell, none) << "the other side";
   EXPECT_EQ(cell_of(t, part), 8u);
   EXPECT_EQ(cell_of(t, parent_of(part)), 7u);
 }
@@ -85,13 +85,13 @@ TEST(Cells, DivideDownToTheLastLevel) {
   CellTable t = table();
   const Vec3 p(1.2f, 2.3f, 3.4f);
   for (int level = 0; level <= most_cell_levels; ++level) {
-    const Place at = find(t, p, up);
+    const Place at = find(t, p, north);
     ASSERT_EQ(level_of(at.missing), level);
     insert(t, at.missing, uint32_t(level));
     if (level < most_cell_levels) set_divided(t, at.missing);
   }
-  EXPECT_EQ(find(t, p, up).cell, uint32_t(most_cell_levels));
-  EXPECT_EQ(find(t, p, up).missing, 0u);
+  EXPECT_EQ(find(t, p, north).cell, uint32_t(most_cell_levels));
+  EXPECT_EQ(find(t, p, north).missing, 0u);
 }
 
 // As a file of fields may have them: parts before wholes, marks of division in any order.
@@ -99,11 +99,11 @@ TEST(Cells, AnswerTheSameInWhateverOrderTheyCame) {
   CellTable grown = table(), stored = table();
   Sampler sampler = make_sampler(SamplerKind::independent, 1, Side::camera, 0, 0);
   const Vec3 corner = centre_of_cube(grown, 3, 4, 5);
-  const auto somewhere = [&] { return corner + grown.width * Vec3(sampler.next2(), sampler.next2().x); };
+  const auto anywhere = [&] { return corner + grown.width * Vec3(sampler.next2(), sampler.next2().x); };
   std::vector<CellKey> keys;
   std::set<CellKey> divided;
   for (int i = 0; i < 3000; ++i) {
-    const CellKey missing = find(grown, somewhere(), up).missing;
+    const CellKey missing = find(grown, anywhere(), north).missing;
     if (missing == 0) continue;
     insert(grown, missing, uint32_t(keys.size()));
     if (keys.size() % 3 != 2 && level_of(missing) < 5) divided.insert(missing), set_divided(grown, missing);
@@ -116,8 +116,8 @@ TEST(Cells, AnswerTheSameInWhateverOrderTheyCame) {
   }
   for (const CellKey key : divided) set_divided(stored, key), set_divided(stored, key);
   for (int i = 0; i < 10000; ++i) {
-    const Vec3 p = somewhere();
-    const Place a = find(grown, p, up), b = find(stored, p, up);
+    const Vec3 p = anywhere();
+    const Place a = find(grown, p, north), b = find(stored, p, north);
     ASSERT_EQ(a.cell, b.cell);
     ASSERT_EQ(a.missing, b.missing);
   }
@@ -127,12 +127,12 @@ TEST(Cells, TableGrows) {
   CellTable t = table();
   std::vector<CellKey> keys;
   for (int i = 0; i < 8000; ++i) {
-    keys.push_back(find(t, centre_of_cube(t, i % 20, i / 20 % 20, i / 400), up).missing);
+    keys.push_back(find(t, centre_of_cube(t, i % 20, i / 20 % 20, i / 400), north).missing);
     insert(t, keys.back(), uint32_t(i));
     if (i % 3 == 0) set_divided(t, keys.back());
   }
   for (int i = 0; i < 8000; ++i) {
-    const Place at = find(t, centre_of_cube(t, i % 20, i / 20 % 20, i / 400), up);
+    const Place at = find(t, centre_of_cube(t, i % 20, i / 20 % 20, i / 400), north);
     ASSERT_EQ(at.cell, uint32_t(i));
     ASSERT_EQ(at.missing != 0, i % 3 == 0) << "still divided";
   }
@@ -144,10 +144,10 @@ TEST(Cells, FarPlacesAndExtremeSizes) {
     EXPECT_GT(t.width, 0) << radius;
     for (const float x : {0.0f, 1.0f, -1e10f, 1e30f, -infinity, infinity})
       for (const Vec3 p : {Vec3(x), Vec3(0, x, 0)}) {
-        const Place at = find(t, p, up);
+        const Place at = find(t, p, north);
         ASSERT_NE(at.missing == 0, at.cell == none);
         if (at.missing) insert(t, at.missing, 1);
-        EXPECT_EQ(find(t, p, up).cell, 1u);
+        EXPECT_EQ(find(t, p, north).cell, 1u);
       }
   }
 }

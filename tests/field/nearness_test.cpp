@@ -9,7 +9,7 @@
 namespace ajar {
 namespace {
 
-const Vec3 up(0, 1, 0);
+const Vec3 upwards(0, 1, 0);
 
 struct Nearness : testing::Test {
   Fields fields;
@@ -18,7 +18,7 @@ struct Nearness : testing::Test {
   void SetUp() override {
     fields.table = make_cell_table(Vec3(0), 9);
     Sightings seen;
-    for (int i = 0; i < 4; ++i) record_missing(seen, find(fields.table, Vec3(0), up).missing, up);
+    for (int i = 0; i < 4; ++i) record_missing(seen, find(fields.table, Vec3(0), upwards).missing, upwards);
     fields = learn(fields, start_training(fields), seen, 1, {});
     ASSERT_EQ(fields.cells.size(), 1u);
     edge = fields.table.width;
@@ -104,16 +104,16 @@ TEST_F(Nearness, SamplesKnowTheirDensity) {
 
 TEST_F(Nearness, IsLearnedFromWhereTheLightComesFrom) {
   const float distance = 2;
-  learn_from(cell().center + distance * up, 6);
+  learn_from(cell().center + distance * upwards, 6);
   EXPECT_NEAR(fields.q.cells[0].near, 1 / distance, 0.1f / distance);
   EXPECT_EQ(fields.w.cells[0].near, 0) << "nothing was recorded of it";
-  learn_from(cell().center + 0.01f * up, 6);
+  learn_from(cell().center + 0.01f * upwards, 6);
   EXPECT_LE(fields.q.cells[0].near, 1 / edge) << "the cell must lie within the sphere";
 }
 
 // What it is good for: more of what is sampled goes to a small light that is seen from all over a cell.
 TEST_F(Nearness, MakesSmallLightsSharp) {
-  const Vec3 light = cell().center + 2.0f * up;
+  const Vec3 light = cell().center + 2.0f * upwards;
   learn_from(light, 10);
   Fields flat = fields;
   flat.q.cells[0].near = 0;

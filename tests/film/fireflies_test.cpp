@@ -11,7 +11,7 @@
 namespace ajar {
 namespace {
 
-Film film_of(int width, int height) {
+Film limited_film(int width, int height) {
   Camera camera;
   camera.crop_width = camera.width = width, camera.crop_height = camera.height = height;
   Film film = make_film(camera, make_filter(FilterKind::box), false);
@@ -19,7 +19,7 @@ Film film_of(int width, int height) {
   return film;
 }
 
-void pass(Film& film, const std::vector<Rgb>& camera) {
+void add_pass(Film& film, const std::vector<Rgb>& camera) {
   film.camera = camera;
   finish_pass(film);
 }
@@ -65,11 +65,11 @@ double by_definition(const std::vector<std::vector<Rgb>>& passes, int width, int
 TEST(Fireflies, AreLimitedByWhatFourPassesSawAround) {
   uint64_t state = 7;
   for (const auto& [width, height] : {std::pair{9, 7}, std::pair{1, 5}, std::pair{2, 1}}) {
-    Film film = film_of(width, height);
+    Film film = limited_film(width, height);
     std::vector<std::vector<Rgb>> passes;
     for (int n = 0; n < 23; ++n) {
       passes.push_back(noise(film.pixels(), 1.5, state));
-      pass(film, passes.back());
+      add_pass(film, passes.back());
       if (n < 3) continue;
       const Picture found = develop(film);
       for (int y = 0; y < height; ++y)
@@ -83,23 +83,23 @@ TEST(Fireflies, AreLimitedByWhatFourPassesSawAround) {
 }
 
 TEST(Fireflies, WhatComesInEveryPassStays) {
-  Film film = film_of(8, 8);
+  Film film = limited_film(8, 8);
   std::vector<Rgb> image(64, Rgb(0.1f));
   image[27] = Rgb(1000, 500, 2000);  // a lamp of one pixel
   for (int n = 0; n < 4; ++n) {
-    pass(film, image);
+    add_pass(film, image);
     EXPECT_FLOAT_EQ(channel(develop(film), 3, 3), 500) << n << ": before the fourth pass nothing is limited";
   }
   EXPECT_FLOAT_EQ(channel(develop(film), 4, 3), 0.1f);
 }
 
 TEST(Fireflies, OneSparkIsTakenBackToTwiceWhatIsAround) {
-  Film film = film_of(8, 8);
+  Film film = limited_film(8, 8);
   const std::vector<Rgb> image(64, Rgb(1));
-  for (int n = 0; n < 9; ++n) pass(film, image);
+  for (int n = 0; n < 9; ++n) add_pass(film, image);
   std::vector<Rgb> spark = image;
   spark[27] = Rgb(1e6f);
-  pass(film, spark);
+  add_pass(film, spark);
   const Picture found = develop(film);
   EXPECT_FLOAT_EQ(channel(found, 3, 3), 1.1f) << "nine times 1, once 2";
   EXPECT_FLOAT_EQ(channel(found, 4, 3), 1);
@@ -110,9 +110,9 @@ TEST(Fireflies, OneSparkIsTakenBackToTwiceWhatIsAround) {
 // However heavy the tail, what is taken away is of three passes at most: with a mean, it is nothing in the end.
 TEST(Fireflies, LimitsFadeAsPassesGoOn) {
   const auto error = [](int passes) {
-    Film film = film_of(16, 16);
+    Film film = limited_film(16, 16);
     uint64_t state = 3;
-    for (int n = 0; n < passes; ++n) pass(film, noise(film.pixels(), 2.5, state));
+    for (int n = 0; n < passes; ++n) add_pass(film, noise(film.pixels(), 2.5, state));
     const Picture found = develop(film);
     double sum = 0, limited = 0;
     for (size_t i = 0; i < film.pixels(); ++i)
@@ -126,13 +126,13 @@ TEST(Fireflies, LimitsFadeAsPassesGoOn) {
 }
 
 TEST(Fireflies, DroppedPassesAreForgotten) {
-  Film film = film_of(4, 4);
-  for (int n = 0; n < 4; ++n) pass(film, std::vector<Rgb>(16, Rgb(100)));
+  Film film = limited_film(4, 4);
+  for (int n = 0; n < 4; ++n) add_pass(film, std::vector<Rgb>(16, Rgb(100)));
   drop_passes(film);
-  for (int n = 0; n < 3; ++n) pass(film, std::vector<Rgb>(16, Rgb(1)));
+  for (int n = 0; n < 3; ++n) add_pass(film, std::vector<Rgb>(16, Rgb(1)));
   std::vector<Rgb> spark(16, Rgb(1));
   spark[5] = Rgb(50);
-  pass(film, spark);
+  add_pass(film, spark);
   EXPECT_FLOAT_EQ(channel(develop(film), 1, 1), 1.25f);
 }
 

@@ -12,27 +12,27 @@ namespace {
 using Key = std::pair<uint32_t, int>;
 Key key_of(const LightStore::Place& at) { return {at.path, at.s}; }
 
-constexpr int n = 1000;
-float mark(int i) { return (float(i) + 0.5f) / n; }
+constexpr int pools = 1000;
+float mark(int i) { return (float(i) + 0.5f) / pools; }
 
 // Each place counts 1 in the mean over marks, and is there at most once.
 void expect_stands_for(const LightStore& all, double count, const std::function<void(LightStore&, float)>& fill) {
   std::map<Key, double> counts, squares;
-  for (int i = 0; i < n; ++i) {
+  for (int i = 0; i < pools; ++i) {
     LightStore some;
     fill(some, mark(i));
     EXPECT_EQ(some.paths, all.paths);
     EXPECT_NEAR(double(some.places.size()), count, 2);
     std::map<Key, int> here;
     for (const LightStore::Place& at : some.places) {
-      counts[key_of(at)] += double(at.counts) / n, squares[key_of(at)] += sqr(double(at.counts)) / n;
+      counts[key_of(at)] += double(at.counts) / pools, squares[key_of(at)] += sqr(double(at.counts)) / pools;
       EXPECT_EQ(++here[key_of(at)], 1);
       EXPECT_GE(at.counts, 1 - 1e-6f);
     }
   }
   EXPECT_EQ(counts.size(), all.places.size());
   for (const auto& [place, times] : counts)
-    EXPECT_NEAR(times, 1, 1e-3 + 5 * std::sqrt((squares[place] - sqr(times)) / n));
+    EXPECT_NEAR(times, 1, 1e-3 + 5 * std::sqrt((squares[place] - sqr(times)) / pools));
 }
 
 TEST(Pool, WhatIsKeptStandsForAllPlaces) {
@@ -49,7 +49,7 @@ TEST(Pool, WhatIsKeptOfWhatWasKeptStandsForAllPlaces) {
   LightStore first, second, together;
   append(together, all), append(together, all);
   expect_stands_for(together, 40, [&](LightStore& some, float u) {
-    const float other = float(hash(uint64_t(double(u) * n), 3) % n) / n;
+    const float other = float(hash(uint64_t(double(u) * pools), 3) % pools) / pools;
     keep(first, {&all}, 80, u), keep(second, {&all}, 80, u);
     keep(some, {&first, &second}, 40, other);
   });
@@ -62,14 +62,14 @@ TEST(Pool, KeepsWhatIsWorthMuch) {
   LightStore some;
   double worth = 0, kept = 0, mean = 0;
   for (const LightStore::Place& at : all.places) worth += double(at.worth) / double(all.places.size());
-  for (int i = 0; i < n; ++i) {
+  for (int i = 0; i < pools; ++i) {
     keep(some, {&all}, 20, mark(i));
     for (const LightStore::Place& at : some.places)
       kept += double(at.worth), mean += double(at.counts) * double(at.worth);
   }
   ASSERT_GT(worth, 0);
-  EXPECT_GT(kept / (20 * n), 1.5 * worth);
-  EXPECT_NEAR(mean / (double(n) * double(all.places.size())), worth, 0.02 * worth);
+  EXPECT_GT(kept / (20 * pools), 1.5 * worth);
+  EXPECT_NEAR(mean / (double(pools) * double(all.places.size())), worth, 0.02 * worth);
 }
 
 // Where fields know nothing, and where there are fewer than are asked for.

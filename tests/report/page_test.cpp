@@ -217,8 +217,12 @@ TEST_F(Page, WrongResultsAreNamed) {
 TEST_F(Page, ResultsAreReadFromTheFolder) {
   write_text((folder / "results.json").string(), results.dump());
   EXPECT_EQ(read_results(folder), results);
-  write_text((folder / "results.json").string(), "{");
-  EXPECT_THROW(read_results(folder), Error);
+  for (const char* damaged : {"{", ""}) {
+    write_text((folder / "results.json").string(), damaged);
+    const std::string error = kit::error_of([&] { read_results(folder); });
+    EXPECT_EQ(error.find("permissions"), std::string::npos) << error;
+    EXPECT_NE(error.find("results.json"), std::string::npos) << error;
+  }
   std::filesystem::remove(folder / "results.json");
   EXPECT_THROW(read_results(folder), Error);
 }

@@ -173,7 +173,8 @@ TEST_F(SuiteFile, WrongTypesAndValues) {
   expect_error("/methods/0/field_rule", "mean", "field_rule");
   expect_error("/methods/0/field_memory", 100, "field_memory: is 100");
   expect_error("/methods/1/name", "p", "methods \"p\".name: another has this name");
-  expect_error("/methods/1/name", "../p", "names become file names");
+  for (const char* name : {"../p", "..p", "a/b"}) expect_error("/methods/1/name", name, "names become file names");
+  expect_error("/methods/0/name", "reference", "the reference's image has this name");
   expect_error("/scenes/1/name", "one", "another has this name");
   expect_error("/scenes/0/size", Json{32}, "scenes \"one\".size: write [WIDTH, HEIGHT]");
   expect_error("/scenes/0/size", Json{32, 0}, "scenes \"one\".size[1]: is 0");
@@ -236,6 +237,9 @@ TEST_F(SuiteFile, KeysThatDoNothingAreErrors) {
            "light_choice: light chooses its lights by their power");
   expect({{"integrator", "vcm"}, {"light_choice", "learned"}}, "light_choice: vcm learns no choice of lights");
   expect({{"integrator", "vcm"}, {"light_choice", "tree"}}, "");
+  for (const std::string name : {"light", "photon"})
+    expect({{"integrator", name}, {"heuristic", "balance"}}, "heuristic: " + name + " has one way to each path");
+  expect({{"integrator", "path"}, {"heuristic", "balance"}}, "");
   expect({{"integrator", "bdpt"}, {"merge_radius", 2}}, "merge_radius: bdpt merges nothing");
   expect({{"integrator", "vcm"}, {"merge_radius", 0}}, "");
   expect({{"integrator", "photon"}, {"merge_radius", 0}}, "merge_radius: is 0; photon needs");

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -24,6 +25,7 @@ struct ViewTallies {
 };
 
 inline constexpr uint32_t most_regions = 512, no_region = ~0u;
+inline constexpr std::size_t bytes_of_pair = 2 * sizeof(float) + sizeof(uint8_t);
 
 /// Pairs of so many regions, those of a region with itself too.
 inline uint32_t pair_count(uint32_t regions) { return regions * (regions + 1) / 2; }
@@ -31,10 +33,14 @@ inline uint32_t pair_count(uint32_t regions) { return regions * (regions + 1) / 
 inline uint32_t pair_index(uint32_t a, uint32_t b) { return pair_count(std::max(a, b)) + std::min(a, b); }
 
 inline constexpr float chance_step = 1 / 255.0f;
+/// Of so many regions no more than so much memory has room for the pairs of; most_regions at most.
+inline uint32_t affordable_regions(uint32_t regions, double memory) {
+  return std::min({regions, most_regions, uint32_t(std::sqrt(2 * memory / double(bytes_of_pair) + 0.25) - 0.5)});
+}
 inline float chance(const Views& v, uint32_t a, uint32_t b) {
   return a < v.regions && b < v.regions ? float(v.chance[pair_index(a, b)]) * chance_step : 1;
 }
-inline std::size_t bytes(const Views& v) { return v.tried.size() * (2 * sizeof(float) + sizeof(uint8_t)); }
+inline std::size_t bytes(const Views& v) { return v.tried.size() * bytes_of_pair; }
 ViewTallies start_tallies(const Views& views);
 void record_join(const Views& views, ViewTallies& tallies, uint32_t a, uint32_t b, bool free);
 /// The next views, of so many regions: of older evidence the share kept counts.

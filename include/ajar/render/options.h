@@ -54,6 +54,9 @@ bool may_leave_out(const RenderOptions& options);
 bool is_merging(const std::string& integrator);
 /// Whether it tells by which strategy light was found; throws Error for an unknown integrator.
 bool has_strategies(const std::string& integrator);
+/// Whether several of its strategies find a path, so that RenderOptions::heuristic matters; throws Error for an unknown
+/// integrator.
+bool weighs_strategies(const std::string& integrator);
 /// What its fields are learned with: an integrator without light subpaths guides the camera's alone.
 LearnOptions learn_options(const RenderOptions& options);
 

@@ -287,7 +287,9 @@ void bumpmap(Params& p, Material& m) {
 
 // Slopes of a height along u and v as the colours of a normal map.
 void slopes_to_normals(Image& image) {
-  if (image.channels != 3 || image.floats.empty()) return;
+  if (image.channels != 3) return;
+  for (const uint8_t byte : image.bytes) image.floats.push_back(image.decode[byte]);
+  image.bytes.clear();
   for (size_t i = 0; i + 2 < image.floats.size(); i += 3) {
     const Vec3 n = glm::normalize(Vec3(-image.floats[i], -image.floats[i + 1], 1));
     for (int c = 0; c < 3; ++c) image.floats[i + size_t(c)] = n[c] * 0.5f + 0.5f;

@@ -127,7 +127,7 @@ void expand(Expansion& e, std::string_view text);
 
 void put_in(Expansion& e, std::string_view name) {
   const auto found = e.entities.find(name);
-  if (found == e.entities.end()) e.fail(name, "is not declared in the DOCTYPE");
+  if (found == e.entities.end()) e.fail(name, "is declared in no DOCTYPE");
   if (std::find(e.open.begin(), e.open.end(), name) != e.open.end()) e.fail(name, "contains itself");
   if (e.open.size() >= max_open_entities) e.fail(name, fmt::format("is nested more than {} deep", max_open_entities));
   if (++e.references > max_references) e.fail(name, fmt::format("makes more than {} references", max_references));
@@ -180,7 +180,9 @@ void expand(Expansion& e, std::string_view text) {
 std::string expand_entities(const std::string& text, const std::string& folder, const std::string& name) {
   Expansion e{folder, name, {}, {}, {}, 0, 0, 1};
   Cursor in{text};
-  if (!read_doctype(in, e)) return text;
+  const bool declares = read_doctype(in, e);
+  if (!declares && text.find('&') == text.npos) return text;
+  if (!declares) in.rest = text;
   const size_t head = text.size() - in.rest.size();
   e.out.reserve(text.size());
   copy(e, std::string_view(text).substr(0, head));

@@ -90,8 +90,11 @@ struct Sky {
   double scale[3];  // zenith value over the distribution there
 };
 
+// The paper's fits begin at turbidity 2: below, the distribution passes through zero, and grows without bounds.
+constexpr double clearest = 2;
+
 Sky make_sky(const Daylight& day) {
-  const double t = day.turbidity, s = day.zenith;
+  const double t = std::max(day.turbidity, clearest), s = day.zenith;
   Sky sky{
       day,
       {{0.1787 * t - 1.4630, -0.3554 * t + 0.4275, -0.0227 * t + 5.3251, 0.1206 * t - 2.5771, -0.0670 * t + 0.3703},
@@ -162,6 +165,8 @@ double scale_of(Params& p, const char* name, double otherwise) {
 
 void add_sky(Params& p, const Daylight& day, double scale, float weight) {
   const int width = integer(p, "resolution", 512, 8, 8192), height = width / 2;
+  if (day.turbidity < clearest)
+    note(p.loader, p.node, fmt::format("the sky is that of turbidity {}: its model knows no clearer air", clearest));
   const Sky sky = make_sky(day);
   Image image;
   image.width = width, image.height = height, image.channels = 3;

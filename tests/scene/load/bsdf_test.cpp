@@ -242,6 +242,12 @@ TEST(Bsdf, BumpAndNormalMaps) {
   EXPECT_EQ(m.kind, MaterialKind::normalmap);
   EXPECT_NE(m.map.texture, none);
   const Scene s = load_inside(bsdf("normalmap", word("filename", "four.png") + number("tiles", 4) + bsdf("diffuse")));
+  const Scene slopes = load_inside(
+      bsdf("normalmap", word("filename", "four.png") + "<boolean name='use_slopes' value='true'/>" + bsdf("diffuse")));
+  const Rgb slope = texel(slopes.images.front(), 0, 0), n = texel(slopes.images.back(), 0, 0) * 2.0f - 1.0f;
+  EXPECT_NEAR(-n.x / n.z, slope.x, 1e-5);
+  EXPECT_NEAR(-n.y / n.z, slope.y, 1e-5);
+  EXPECT_NEAR(length2(n), 1, 1e-5);
   const Texture& t = s.textures[s.materials.back().map.texture];
   EXPECT_FLOAT_EQ(t.to_uv[0][0], 4);
   EXPECT_FLOAT_EQ(s.images[t.image].decode[128], 128 / 255.0f);  // raw

@@ -252,6 +252,21 @@ TEST(Emitters, UnknownOnesInShapes) {
   EXPECT_SAYS(error_of("<shape type='sphere'>" + emitter("point") + "</shape>"), "only an area light can be inside");
 }
 
+// Below turbidity 2 the model of the sky ends: its luminance passes through 0, and grows without bounds.
+TEST(Emitters, ClearSkiesAreThoseOfTheClearest) {
+  const auto sky = [](const char* turbidity) {
+    return load_inside(std::string("<emitter type='sky'><float name='turbidity' value='") + turbidity +
+                       "'/></emitter>");
+  };
+  const Scene clearest = sky("2");
+  EXPECT_FALSE(says(clearest.notes, "turbidity"));
+  for (const char* turbidity : {"1", "1.1", "1.6", "1.9"}) {
+    const Scene s = sky(turbidity);
+    EXPECT_EQ(s.images.at(0).floats, clearest.images.at(0).floats) << turbidity;
+    EXPECT_TRUE(says(s.notes, "the sky is that of turbidity 2")) << turbidity;
+  }
+}
+
 // Behind so much air no blue is left, and less than none of it in sRGB: that must not take the red with it.
 TEST(Emitters, LowSunIsRed) {
   for (const char* turbidity : {"3", "5.2", "8"})

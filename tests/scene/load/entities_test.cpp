@@ -7,16 +7,22 @@ namespace {
 
 using namespace kit;
 
-std::string expanded(const std::string& declared, const std::string& text) {
-  return expand_entities("<!DOCTYPE scene [" + declared + "]>" + text, assets(), "a.xml");
+std::string with_doctype(const std::string& declared, const std::string& text) {
+  return "<!DOCTYPE scene [" + declared + "]>" + text;
 }
-std::string wrong(const std::string& declared, const std::string& text) {
+std::string expanded(const std::string& declared, const std::string& text) {
+  return expand_entities(with_doctype(declared, text), assets(), "a.xml");
+}
+std::string error_in(const std::string& text) {
   try {
-    expanded(declared, text);
+    expand_entities(text, assets(), "a.xml");
   } catch (const Error& error) {
     return error.what();
   }
   return {};
+}
+std::string wrong(const std::string& declared, const std::string& text) {
+  return error_in(with_doctype(declared, text));
 }
 Scene load(const std::string& doctype, const std::string& inside) {
   return load_scene_text(doctype + "<scene version='0.6.0'>" + camera_text + inside + "</scene>", assets(), "a.xml");
@@ -32,7 +38,7 @@ TEST(Entities, StandForTextAndFiles) {
 }
 
 TEST(Entities, LeaveTheRestAsItIs) {
-  const std::string plain = "<scene a='&lt;&unknown;'>&#10;</scene>";
+  const std::string plain = "<scene a='&lt;&amp; & b'><!-- &r; -->&#10;</scene>";
   EXPECT_EQ(expand_entities(plain, "", "a.xml"), plain);
   const std::string rest = "><s a='&lt; &amp; &#10; & b'><!-- &r; --><![CDATA[&r;]]></s>";
   EXPECT_EQ(expanded("<!ENTITY r '1'>", rest), "<!DOCTYPE scene [<!ENTITY r '1'>]>" + rest);
@@ -49,12 +55,13 @@ TEST(Entities, KeepTheLines) {
 }
 
 TEST(Entities, WrongOnesAreErrors) {
-  EXPECT_SAYS(wrong("<!ENTITY r '1'>", "\n\n&s;"), "a.xml:3: the entity &s; is not declared");
+  EXPECT_SAYS(wrong("<!ENTITY r '1'>", "\n\n&s;"), "a.xml:3: the entity &s; is declared in no DOCTYPE");
   EXPECT_SAYS(wrong("<!ENTITY a '&b;'><!ENTITY b '&a;'>", "&a;"), "&a; contains itself");
   EXPECT_SAYS(wrong("<!ENTITY h SYSTEM 'nowhere.xml'>", "&h;"), "the entity &h; cannot be put in: ");
   EXPECT_SAYS(wrong("<!ENTITY h SYSTEM 'nowhere.xml'>", "&h;"), "nowhere.xml: there is no such file");
   EXPECT_SAYS(wrong("<!ENTITY h SYSTEM '.'>", "&h;"), "is a folder");
   EXPECT_EQ(wrong("<!ENTITY h SYSTEM 'nowhere.xml'>", ""), "");  // not used
+  EXPECT_SAYS(error_in("<scene>\n<shape type='&f;'/></scene>"), "a.xml:2: the entity &f; is declared in no DOCTYPE");
 }
 
 TEST(Entities, ExplosionIsStopped) {
