@@ -42,7 +42,7 @@ std::optional<Json> find_run(const Bench& bench, const Stand& stand, const Metho
   const fs::path path = bench.run_path(stand, method, seed);
   std::error_code unreadable;
   if (!fs::exists(path, unreadable)) return {};
-  Json file = read_json(path);
+  Json file = read_json(path, "delete it, and the run is made again");
   if (!file.is_object() || !file.contains("run") || !file.contains("reference"))
     throw Error(fmt::format("{}: is no run of a bench; delete it", path.string()));
   if (file["reference"] != stand.reference_hash)
@@ -267,7 +267,7 @@ void claim_folder(const Bench& bench) {
   key["version"] = bench.options.version;
   std::error_code unreadable;
   if (fs::exists(path, unreadable)) {
-    if (read_json(path) != key)
+    if (read_json(path, "delete the folder, or name another one with -o") != key)
       throw Error(fmt::format("{}: holds runs of another suite than {} asks for{}; name another folder with -o",
                               bench.options.folder.string(), bench.suite.path.string(),
                               bench.suite.quick ? " with --quick" : ""));

@@ -21,7 +21,7 @@ std::string shown(const Json& value) {
 
 }  // namespace
 
-Json read_json(const std::filesystem::path& path) {
+Json read_json(const std::filesystem::path& path, const char* cure) {
   std::ifstream in(path, std::ios::binary);
   std::error_code none_such;
   if (!in || std::filesystem::is_directory(path, none_such))
@@ -41,8 +41,7 @@ Json read_json(const std::filesystem::path& path) {
     const std::string before = bytes.substr(0, std::min(error.byte > 0 ? error.byte - 1 : 0, bytes.size()));
     const auto line = 1 + std::count(before.begin(), before.end(), '\n');
     const size_t column = before.size() - (before.rfind('\n') == std::string::npos ? 0 : before.rfind('\n') + 1) + 1;
-    throw Error(fmt::format("{}: line {}, column {}: not JSON here; look for a missing comma, quote or bracket",
-                            path.string(), line, column));
+    throw Error(fmt::format("{}: line {}, column {}: not JSON here; {}", path.string(), line, column, cure));
   } catch (const Json::exception&) {
     throw Error(fmt::format("{}: holds a number that is too large; write one below 1e308", path.string()));
   }

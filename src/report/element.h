@@ -17,8 +17,9 @@ struct Element {
   std::string file, place;  ///< place: "scenes[1].size"; empty: the whole file
 };
 
-/// Throws Error with line and column, also for a key that comes twice.
-nlohmann::ordered_json read_json(const std::filesystem::path& path);
+/// Throws Error with line, column and cure, also for a key that comes twice.
+nlohmann::ordered_json read_json(const std::filesystem::path& path,
+                                 const char* cure = "look for a missing comma, quote or bracket");
 
 [[noreturn]] void fail(const Element& element, const std::string& what);
 /// Fails unless it is an object with these keys only.

@@ -236,8 +236,8 @@ std::optional<Reference> find_reference(const Suite& suite, const BenchScene& sc
   const fs::path stem = reference_stem(scene, camera.crop_width, camera.crop_height, options.references);
   const fs::path image = stem.string() + ".exr", json = stem.string() + ".json";
   if (!fs::exists(image) || !fs::exists(json)) return {};
-  Json made = read_json(json);
-  if (made.value("request", Json()) != request_json(scene, loaded))
+  Json made = read_json(json, "delete it, and the reference is made again");
+  if (!made.is_object() || made.value("request", Json()) != request_json(scene, loaded))
     throw Error(
         fmt::format("{}: was made from another scene (a file of it may have changed) or with another budget than {} "
                     "asks for \"{}\"; ask for "

@@ -166,6 +166,23 @@ TEST_F(Bench, ARunThatIsMissingIsMade) {
   EXPECT_EQ(order, "pppp");
 }
 
+// Nobody wrote them by hand: what helps is to make them again.
+TEST_F(Bench, DamagedRecordsAreNamedWithTheirCure) {
+  run(small());
+  const std::string reference = reference_stem(suite(small()).scenes[0], 16, 12, options.references).string() + ".json";
+  for (const auto& [file, cure] : {std::pair{options.folder / "runs/s/p-seed1.json", "the run is made again"},
+                                   {options.folder / "suite.json", "name another one with -o"},
+                                   {fs::path(reference), "the reference is made again"}}) {
+    const std::string whole = kit::bytes_of(file);
+    write_text(file.string(), whole.substr(0, whole.size() / 2));
+    const std::string error = error_of(small());
+    EXPECT_EQ(error.find(file.string() + ": line "), 0u) << error;
+    EXPECT_NE(error.find(std::string("not JSON here; delete ")), std::string::npos) << error;
+    EXPECT_NE(error.find(cure), std::string::npos) << error;
+    write_text(file.string(), whole);
+  }
+}
+
 TEST_F(Bench, ThreadsDoNotMatter) {
   const Json two = run(small());
   options.threads = 1;

@@ -15,7 +15,7 @@
 namespace ajar {
 namespace {
 
-constexpr std::string_view white = " \t\r\n";
+constexpr std::string_view white_space = " \t\r\n";
 constexpr size_t max_open_entities = 32, max_references = 100'000, max_bytes = size_t(1) << 26;
 
 struct Entity {
@@ -44,7 +44,7 @@ struct Cursor {
     rest.remove_prefix(word.size());
     return true;
   }
-  void skip_blanks() { rest.remove_prefix(std::min(rest.find_first_not_of(white), rest.size())); }
+  void skip_blanks() { rest.remove_prefix(std::min(rest.find_first_not_of(white_space), rest.size())); }
   // What stands before the mark, which is passed too; all that is left where there is none.
   std::string_view until(std::string_view mark) {
     const size_t at = rest.find(mark);
