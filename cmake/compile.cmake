@@ -34,8 +34,8 @@ if(AJAR_GOLD AND NOT AJAR_LTO AND NOT AJAR_SANITIZE)
   target_link_options(ajar_options INTERFACE -fuse-ld=gold)
 endif()
 
-# With AJAR_AT_ONCE, headers of others that most files of TARGET read are compiled once. None of Ajar's own: a change of one
-# compiles what includes it and no more.
+# With AJAR_AT_ONCE, headers of others that most files of TARGET read are compiled once. None of Ajar's own: a change of
+# one compiles what includes it and no more.
 function(ajar_precompile target)
   if(AJAR_AT_ONCE)
     target_precompile_headers(${target} PRIVATE ${ARGN})

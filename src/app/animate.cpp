@@ -279,7 +279,7 @@ Work prepare(const AnimateArguments& a) {
   // to be whole may not be.
   const std::shared_ptr<const Scene> zero = load_frame(w.shooting, 0), last = load_frame(w.shooting, r.last),
                                      scene = load_frame(w.shooting, r.first);
-  if (r.first + 1 < r.last) load_frame(w.shooting, r.first + 1);
+  if (!w.shooting.timeline.tracks.empty() && r.first + 1 < r.last) load_frame(w.shooting, r.first + 1);
   for (const auto& one : {zero, scene, last}) check_apart(a, r, *one, w.shooting.cache);
   if (!a.at.empty() && scene->hints.first_time > scene->hints.last_time)
     throw Error(fmt::format("--at {}: nothing in the scene has an <animation>; leave it out", a.at));

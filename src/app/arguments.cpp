@@ -25,15 +25,19 @@ void set_size(Camera& camera, const std::string& text) {
   set_size(camera, w, h);
 }
 
+std::pair<std::string, std::string> parse_define(const std::string& written, const char* forms) {
+  const size_t equals = written.find('=');
+  if (equals == 0 || equals == written.npos) throw Error(fmt::format("-D {}: write {}", written, forms));
+  return {written.substr(0, equals), written.substr(equals + 1)};
+}
+
 LoadOptions load_options(const std::vector<std::string>& defines, bool lenient, std::optional<double> at) {
   if (at && !std::isfinite(*at)) throw Error(fmt::format("--at {}: not a time; write a number", *at));
   LoadOptions o;
   o.lenient = lenient, o.time = at;
   for (const std::string& d : defines) {
-    const size_t equals = d.find('=');
-    if (equals == 0 || equals == std::string::npos) throw Error(fmt::format("-D {}: write -D name=value", d));
-    const std::string name = d.substr(0, equals);
-    if (!o.defines.emplace(name, d.substr(equals + 1)).second)
+    const auto [name, value] = parse_define(d);
+    if (!o.defines.emplace(name, value).second)
       throw Error(fmt::format("-D {}: {} is given twice; leave one of them out", d, name));
   }
   return o;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ajar/render/options.h"
@@ -15,6 +16,8 @@ namespace ajar {
 
 /// WIDTHxHEIGHT in place of the camera's own size and crop window.
 void set_size(Camera& camera, const std::string& text);
+/// Name and value of what stands after -D; forms: how it is written.
+std::pair<std::string, std::string> parse_define(const std::string& written, const char* forms = "-D name=value");
 /// defines: name=value. at: the time of its animations, where one is given.
 LoadOptions load_options(const std::vector<std::string>& defines, bool lenient, std::optional<double> at = {});
 /// Throws Error where a time is given, but nothing moves.

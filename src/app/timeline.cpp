@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "ajar/core/error.h"
+#include "arguments.h"
 
 namespace ajar {
 namespace {
@@ -226,9 +227,7 @@ Timeline make_timeline(const std::string& frames, const std::vector<std::string>
   t.tracks = keys.tracks;
   note_unreached(keyframes, t);
   for (const std::string& d : defines) {
-    const size_t equals = d.find('=');
-    if (equals == 0 || equals == d.npos) throw Error(fmt::format("-D {}: write -D name=FROM..TO or -D name=value", d));
-    const std::string name = d.substr(0, equals), value = d.substr(equals + 1);
+    const auto [name, value] = parse_define(d, "-D name=FROM..TO or -D name=value");
     if (t.tracks.contains(name) || t.constant.contains(name))
       throw Error(fmt::format("-D {}: {} is given twice; leave one of them out", d, name));
     if (const auto sweep = parse_sweep("-D " + d, value, t.frames.count))

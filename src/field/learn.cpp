@@ -20,7 +20,9 @@ constexpr int coarse_levels = 3;
 bool is_left(const Fields& fields, double share, const LearnOptions& options) {
   return double(bytes(fields)) < share * double(options.memory);
 }
-double memory_of_views(const LearnOptions& options) { return for_views * double(options.memory); }
+uint32_t affordable_regions(const LearnOptions& options) {
+  return ajar::affordable_regions(for_views * double(options.memory));
+}
 
 struct Rebuild {
   Structure structure = Structure::adaptive;
@@ -190,7 +192,7 @@ void add_cells(Fields& fields, const Sightings& sightings, const LearnOptions& o
   std::vector<std::pair<CellKey, Sighting>> sorted(sightings.begin(), sightings.end());
   std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   const bool adaptive = fields.structure == Structure::adaptive;
-  const uint32_t most = affordable_regions(most_regions, memory_of_views(options));
+  const uint32_t most = affordable_regions(options);
   for (const auto& [key, seen] : sorted) {
     const double share = !adaptive ? 1 - for_views : level_of(key) < coarse_levels ? for_strata : for_cells;
     if (!is_left(fields, share, options)) return;
@@ -316,9 +318,8 @@ Fields learn(const Fields& fields, const Training& training, const Sightings& si
   }
   next.regions = fields.regions;
   add_cells(next, sightings, options);
-  next.views =
-      learn_views(fields.views, training.views,
-                  std::max(fields.views.regions, affordable_regions(next.regions, memory_of_views(options))), 0.9f);
+  next.views = learn_views(fields.views, training.views,
+                           std::max(fields.views.regions, std::min(next.regions, affordable_regions(options))), 0.9f);
   restrict_to(next, options.guided);
   return next;
 }

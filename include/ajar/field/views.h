@@ -32,11 +32,12 @@ inline uint32_t pair_count(uint32_t regions) { return regions * (regions + 1) / 
 /// Either way round; the same however many regions there are.
 inline uint32_t pair_index(uint32_t a, uint32_t b) { return pair_count(std::max(a, b)) + std::min(a, b); }
 
-inline constexpr float chance_step = 1 / 255.0f;
-/// Of so many regions no more than so much memory has room for the pairs of; most_regions at most.
-inline uint32_t affordable_regions(uint32_t regions, double memory) {
-  return std::min({regions, most_regions, uint32_t(std::sqrt(2 * memory / double(bytes_of_pair) + 0.25) - 0.5)});
+/// So many regions that so much memory has room for their pairs; most_regions at most.
+inline uint32_t affordable_regions(double memory) {
+  return std::min(most_regions, uint32_t(std::sqrt(2 * memory / double(bytes_of_pair) + 0.25) - 0.5));
 }
+
+inline constexpr float chance_step = 1 / 255.0f;
 inline float chance(const Views& v, uint32_t a, uint32_t b) {
   return a < v.regions && b < v.regions ? float(v.chance[pair_index(a, b)]) * chance_step : 1;
 }

@@ -94,14 +94,14 @@ void read_entity(Cursor& in, Expansion& e) {
   if (file && in.word() != "NDATA") e.entities.emplace(name, Entity{"", std::string(*file), false});
 }
 
-// From <!DOCTYPE to its end; false where there is none.
-bool read_doctype(Cursor& in, Expansion& e) {
+// Up to the end of the DOCTYPE, where there is one.
+void read_doctype(Cursor& in, Expansion& e) {
   in.take("\xef\xbb\xbf");
   for (in.skip_blanks(); in.skip_comment(); in.skip_blanks()) {
   }
-  if (!in.take("<!DOCTYPE")) return false;
+  if (!in.take("<!DOCTYPE")) return;
   in.skip_to("[>");
-  if (!in.take("[")) return true;
+  if (!in.take("[")) return;
   for (in.skip_blanks(); !in.rest.empty() && !in.take("]"); in.skip_blanks()) {
     if (in.skip_comment()) continue;
     const bool declares = in.take("<!");
@@ -109,7 +109,6 @@ bool read_doctype(Cursor& in, Expansion& e) {
     if (declares) in.skip_to(">");
     in.rest.remove_prefix(std::min<size_t>(1, in.rest.size()));
   }
-  return true;
 }
 
 void read_entity_file(Expansion& e, const std::string& name, Entity& entity) {
@@ -178,11 +177,10 @@ void expand(Expansion& e, std::string_view text) {
 }  // namespace
 
 std::string expand_entities(const std::string& text, const std::string& folder, const std::string& name) {
+  if (text.find('&') == text.npos) return text;
   Expansion e{folder, name, {}, {}, {}, 0, 0, 1};
   Cursor in{text};
-  const bool declares = read_doctype(in, e);
-  if (!declares && text.find('&') == text.npos) return text;
-  if (!declares) in.rest = text;
+  read_doctype(in, e);
   const size_t head = text.size() - in.rest.size();
   e.out.reserve(text.size());
   copy(e, std::string_view(text).substr(0, head));

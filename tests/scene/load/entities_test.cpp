@@ -14,12 +14,7 @@ std::string expanded(const std::string& declared, const std::string& text) {
   return expand_entities(with_doctype(declared, text), assets(), "a.xml");
 }
 std::string error_in(const std::string& text) {
-  try {
-    expand_entities(text, assets(), "a.xml");
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
+  return kit::error_of([&] { expand_entities(text, assets(), "a.xml"); });
 }
 std::string wrong(const std::string& declared, const std::string& text) {
   return error_in(with_doctype(declared, text));
