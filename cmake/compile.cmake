@@ -48,6 +48,13 @@ function(ajar_precompile_from source target)
   endif()
 endfunction()
 
+# With AJAR_AT_ONCE, files of TARGET are compiled COUNT at a time: for those that do little but read large headers of others.
+function(ajar_join_files target count)
+  if(AJAR_AT_ONCE)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${count})
+  endif()
+endfunction()
+
 # ajar_room(NAME FILES... USES ROOMS...): one static library per room, so that link order is the data flow; USES names the
 # rooms to its left.
 function(ajar_room name)

@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct BenchArguments {
   std::string suite, out, references;
   bool quick = false, quiet = false;
   int threads = 0;
@@ -54,7 +54,7 @@ struct Line {
   }
 };
 
-std::string command_of(const Arguments& a) {
+std::string command_of(const BenchArguments& a) {
   std::string command = fmt::format("ajar bench {} -o {}", a.suite, a.out);
   if (a.quick) command += " --quick";
   if (!a.references.empty()) command += " --references " + a.references;
@@ -71,7 +71,7 @@ bool is_stress(const std::string& suite) {
 }
 
 // Becomes that program, which stands beside this one or where the build puts it.
-[[noreturn]] void run_stress(const Arguments& a) {
+[[noreturn]] void run_stress(const BenchArguments& a) {
   if (!a.references.empty() || a.threads > 0)
     throw Error(fmt::format("{}: the stress suite takes neither --references nor --threads; leave them out", a.suite));
   const fs::path folder = fs::read_symlink("/proc/self/exe").parent_path(), out = fs::path(a.out) / "stress.md";
@@ -92,7 +92,7 @@ bool is_stress(const std::string& suite) {
       fmt::format("{}: needs bench_stress beside ajar; build it, with -DBUILD_TESTING=ON (docs/stress.md)", a.suite));
 }
 
-void run_bench_command(const Arguments& a) {
+void run_bench_command(const BenchArguments& a) {
   if (is_stress(a.suite)) run_stress(a);
   const Suite suite = load_suite(a.suite, a.quick);
   for (const BenchScene& scene : suite.scenes)
@@ -123,7 +123,7 @@ void run_bench_command(const Arguments& a) {
 }  // namespace
 
 void add_bench(CLI::App& app) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<BenchArguments>();
   CLI::App* c = app.add_subcommand("bench", "Measure error against run time of the methods of a suite");
   c->add_option("suite", a->suite, "JSON file that names scenes, methods, seeds and a budget (docs/bench.md)")
       ->required();

@@ -14,7 +14,7 @@
 namespace ajar {
 namespace {
 
-struct Arguments {
+struct CompareArguments {
   std::string image, reference, variance, diff;
   std::vector<int> crop;
 };
@@ -34,7 +34,7 @@ Picture read_comparable(const std::string& path, const std::vector<int>& window)
   return picture;
 }
 
-void check_diff(const Arguments& arguments) {
+void check_diff(const CompareArguments& arguments) {
   if (arguments.diff.empty()) return;
   if (!is_png(arguments.diff))
     throw Error(fmt::format("--diff {}: is written as PNG; name a file that ends with .png", arguments.diff));
@@ -44,7 +44,7 @@ void check_diff(const Arguments& arguments) {
   check_file(arguments.diff);
 }
 
-void run(const Arguments& arguments) {
+void compare_images(const CompareArguments& arguments) {
   check_diff(arguments);
   Picture image = read_comparable(arguments.image, arguments.crop);
   const Picture reference = read_comparable(arguments.reference, arguments.crop);
@@ -70,7 +70,7 @@ void run(const Arguments& arguments) {
 
 void add_compare(CLI::App& app) {
   CLI::App* command = app.add_subcommand("compare", "Print the difference of two images as one JSON line");
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<CompareArguments>();
   command->add_option("image", arguments->image, "Image to judge (EXR, or anything that OpenImageIO reads)")
       ->required();
   command
@@ -84,7 +84,7 @@ void add_compare(CLI::App& app) {
   command->add_option("--crop", arguments->crop, "Compare only this part: X Y WIDTH HEIGHT")->expected(4);
   command->add_option("--diff", arguments->diff,
                       "Write a PNG of the signed relative difference: red brighter, blue darker");
-  command->callback([arguments] { run(*arguments); });
+  command->callback([arguments] { compare_images(*arguments); });
 }
 
 }  // namespace ajar

@@ -18,14 +18,14 @@
 namespace ajar {
 namespace {
 
-struct Arguments {
+struct FieldsArguments {
   std::string file, scene, out, size;
   std::vector<std::string> defines;
   std::optional<double> at;
   bool lenient = false;
 };
 
-void write_pictures(const Arguments& a, const Scene& scene, const Fields& fields) {
+void write_pictures(const FieldsArguments& a, const Scene& scene, const Fields& fields) {
   const Accel accel(scene);
   const auto write = [&](const char* name, const Picture& picture, const std::string& legend) {
     const std::string path = (std::filesystem::path(a.out) / name).string();
@@ -43,7 +43,7 @@ void write_pictures(const Arguments& a, const Scene& scene, const Fields& fields
   write("strata-w.png", picture_strata(scene, accel, fields, Side::light), "where importance comes from");
 }
 
-void run(const Arguments& a) {
+void show_fields(const FieldsArguments& a) {
   if (a.scene.empty() && !(a.out.empty() && a.size.empty() && a.defines.empty() && !a.at && !a.lenient))
     throw Error("-o, --size, -D, --at and --lenient are for pictures, and these need the scene: add --scene SCENE.xml");
   if (!a.scene.empty() && a.out.empty()) throw Error("--scene is for pictures: add -o FOLDER");
@@ -65,7 +65,7 @@ void run(const Arguments& a) {
 
 void add_fields(CLI::App& app) {
   CLI::App* c = app.add_subcommand("fields", "Tell what a file of learned fields holds, with pictures on request");
-  const auto a = std::make_shared<Arguments>();
+  const auto a = std::make_shared<FieldsArguments>();
   c->add_option("file", a->file, "file that ajar render --save-fields wrote")->required();
   c->add_option("--scene", a->scene, "Mitsuba XML scene that they were learned in, for pictures");
   c->add_option("-o,--out", a->out, "folder for cells.png, irradiance.png, importance.png, strata-q.png, strata-w.png");
@@ -73,7 +73,7 @@ void add_fields(CLI::App& app) {
   c->add_option("-D", a->defines, "name=value: a parameter of the scene")->allow_extra_args(false);
   add_time(*c, a->at);
   c->add_flag("--lenient", a->lenient, "leave out what the loader does not know, as ajar render does");
-  c->callback([a] { run(*a); });
+  c->callback([a] { show_fields(*a); });
 }
 
 }  // namespace ajar

@@ -18,7 +18,7 @@
 namespace ajar {
 namespace {
 
-struct Arguments {
+struct PlanArguments {
   std::string scene, size, cpu_time = "60s";
   std::vector<std::string> defines;
   std::optional<double> at;
@@ -27,7 +27,7 @@ struct Arguments {
   bool json = false, lenient = false;
 };
 
-void run_plan(const Arguments& a) {
+void run_plan(const PlanArguments& a) {
   Scene scene = load_scene(a.scene, load_options(a.defines, a.lenient, a.at));
   check_time(a.at, scene);
   if (!a.size.empty()) set_size(scene.camera, a.size);
@@ -50,7 +50,7 @@ void run_plan(const Arguments& a) {
 }  // namespace
 
 void add_plan(CLI::App& app) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<PlanArguments>();
   CLI::App* c = app.add_subcommand("plan", "Tell which parts of the method a scene needs");
   c->add_option("scene", a->scene, "Mitsuba XML scene")->required();
   c->add_option("--cpu-time", a->cpu_time,

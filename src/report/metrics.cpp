@@ -93,14 +93,14 @@ Picture difference_picture(const Picture& image, const Picture& reference) {
   require_same_size(image, reference);
   const Plane a = luminance_plane(image), r = luminance_plane(reference);
   // sRGB-encoded: ends of ColorBrewer's RdBu, and white.
-  constexpr double brighter[3] = {178, 24, 43}, darker[3] = {33, 102, 172}, none[3] = {255, 255, 255};
+  constexpr double brighter[3] = {178, 24, 43}, darker[3] = {33, 102, 172}, white[3] = {255, 255, 255};
   Picture out{image.width, image.height, {"R", "G", "B"}, {}};
   out.pixels.reserve(3 * a.size());
   for (size_t i = 0; i < a.size(); ++i) {
     const double relative = (a[i] - r[i]) / (std::abs(r[i]) + 0.01),
                  tint = std::sqrt(std::min(std::abs(relative), 1.0));
     const double* end = relative > 0 ? brighter : darker;
-    for (int c = 0; c < 3; ++c) out.pixels.push_back(float(decode_srgb((none[c] + tint * (end[c] - none[c])) / 255)));
+    for (int c = 0; c < 3; ++c) out.pixels.push_back(float(decode_srgb((white[c] + tint * (end[c] - white[c])) / 255)));
   }
   return out;
 }

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* const errors[] = {"relmse", "mse", "relmse_trimmed", "mape"};
+const char* const metric_names[] = {"relmse", "mse", "relmse_trimmed", "mape"};
 
 Json json_of(const std::optional<Spread>& s) {
   if (!s) return nullptr;
@@ -166,7 +166,7 @@ void summarise(Json& method, const Json& baseline_runs, bool is_baseline, const 
                                        : "cpu_seconds",
                   budget.seconds > 0 ? "seconds" : "cpu_seconds"};
   Json summary;
-  for (const char* metric : errors) summary[metric] = error_summary(runs, baseline_runs, metric, axes);
+  for (const char* metric : metric_names) summary[metric] = error_summary(runs, baseline_runs, metric, axes);
   summary["ssim"] = json_of(spread(last_values(runs, "ssim")));
   method["summary"] = summary;
   const std::vector<double> seeds = ratios(runs, baseline_runs, "relmse", axes).error;

@@ -29,8 +29,8 @@ std::string cell(double x) { return std::isnan(x) ? "" : fmt::format("{}", x); }
 // Quoted where a list of numbers would fall apart.
 std::string cell(const std::string& text) { return text.find(',') == text.npos ? text : '"' + text + '"'; }
 
-// One panel of a plot: a figure over frames, logarithmic.
-struct Panel {
+// A figure over frames, logarithmic; one part of the plot.
+struct FramePlot {
   double left = 70, top = 0, width = 600, height = 170;
   double first = 0, last = 1;  // frames
   double low = 0, high = 1;    // decades
@@ -39,7 +39,7 @@ struct Panel {
   double y(double value) const { return top + height * (high - std::log10(value)) / (high - low); }
 };
 
-std::string draw(Panel p, const std::vector<FrameFigures>& frames, const std::string& name, const Figure& figure) {
+std::string draw(FramePlot p, const std::vector<FrameFigures>& frames, const std::string& name, const Figure& figure) {
   double least = INFINITY, most = 0;
   for (const FrameFigures& f : frames)
     if (const double v = figure(f); v > 0) least = std::min(least, v), most = std::max(most, v);
@@ -137,7 +137,7 @@ std::string sequence_csv(const std::vector<FrameFigures>& frames) {
 }
 
 std::string sequence_svg(const std::vector<FrameFigures>& frames, const std::string& title) {
-  Panel p;
+  FramePlot p;
   if (!frames.empty()) p.first = frames.front().frame, p.last = frames.back().frame;
   std::string out =
       "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 700 500' font-family='sans-serif' font-size='12'>\n"

@@ -18,7 +18,7 @@ struct Region {
 };
 
 /// Difference, its variance, and the magnitude that rounding is relative to; one colour channel.
-struct Channel {
+struct Comparison {
   Plane difference, variance, magnitude;
 };
 
@@ -26,7 +26,7 @@ struct Sums {
   double difference = 0, variance = 0, variance2 = 0, magnitude = 0;
 };
 
-Sums sum_region(const Channel& channel, const Region& region) {
+Sums sum_region(const Comparison& channel, const Region& region) {
   Sums s;
   for (int y = region.y; y < region.y + region.height; ++y)
     for (int x = region.x; x < region.x + region.width; ++x) {
@@ -59,7 +59,7 @@ double region_p(const Sums& s, double inflation) {
 /// What neighbouring pixels share (a reconstruction filter's splats) makes a region's sum vary more than the sum of
 /// variances says: by the median of squared differences between z of adjacent blocks, over that of independent numbers.
 /// At least 1.
-double correlation_inflation(const Channel& channel) {
+double correlation_inflation(const Comparison& channel) {
   constexpr double median_chi2 = 0.45493642311957283;  // of chi-square with one degree of freedom
   constexpr size_t fewest = 12;
   const int width = channel.difference.width, height = channel.difference.height;
@@ -95,8 +95,8 @@ struct Level {
 };
 
 /// Tests a region, then its halves while both have pixels enough.
-void descend(const Channel& channel, char name, double inflation, const Region& region, const Sums& sums, size_t depth,
-             std::vector<Level>& levels) {
+void descend(const Comparison& channel, char name, double inflation, const Region& region, const Sums& sums,
+             size_t depth, std::vector<Level>& levels) {
   if (levels.size() <= depth) levels.resize(depth + 1);
   Level& level = levels[depth];
   ++level.count;
@@ -123,9 +123,9 @@ void descend(const Channel& channel, char name, double inflation, const Region& 
 }
 
 /// Per-pixel figures.
-void pixel_figures(const std::array<Channel, 3>& channels, ZTest& test) {
+void pixel_figures(const std::array<Comparison, 3>& channels, ZTest& test) {
   double count = 0, sum = 0, squares = 0;
-  for (const Channel& channel : channels)
+  for (const Comparison& channel : channels)
     for (size_t i = 0; i < channel.variance.size(); ++i) {
       if (channel.variance[i] <= 0) continue;
       const double z = beyond_rounding(channel.difference[i], channel.magnitude[i]) / std::sqrt(channel.variance[i]);
@@ -142,7 +142,7 @@ void pixel_figures(const std::array<Channel, 3>& channels, ZTest& test) {
   if (count > 1) test.variance = (squares - sum * sum / count) / (count - 1);
 }
 
-void add_variance(const Picture& picture, std::array<Channel, 3>& channels) {
+void add_variance(const Picture& picture, std::array<Comparison, 3>& channels) {
   if (!has_variance(picture)) return;
   const Picture variance = select(picture, {"Variance.R", "Variance.G", "Variance.B"});
   for (size_t c = 0; c < 3; ++c)
@@ -185,7 +185,7 @@ ZTest z_test(const Picture& image, const Picture& reference) {
   if (!has_variance(image) && !has_variance(reference))
     throw Error("no image has channels Variance.R, Variance.G, Variance.B; render with variance, or name its file");
   const std::array<Plane, 3> a = rgb_planes(image), b = rgb_planes(reference);
-  std::array<Channel, 3> channels;
+  std::array<Comparison, 3> channels;
   for (size_t c = 0; c < 3; ++c) {
     channels[c].difference = channels[c].variance = channels[c].magnitude = make_plane(image.width, image.height);
     for (size_t i = 0; i < a[c].size(); ++i) {
@@ -196,7 +196,7 @@ ZTest z_test(const Picture& image, const Picture& reference) {
   add_variance(image, channels);
   add_variance(reference, channels);
   // A deviation below rounding is what rounding left of none: the samples were equal, which is no measure of noise.
-  for (Channel& channel : channels)
+  for (Comparison& channel : channels)
     for (size_t i = 0; i < channel.variance.size(); ++i)
       if (const double least = rounding * channel.magnitude[i]; channel.variance[i] <= least * least)
         channel.variance[i] = 0;
