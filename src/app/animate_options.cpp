@@ -54,7 +54,7 @@ void add_options(CLI::App& command, AnimateArguments& arguments) {
       ->check(CLI::IsMember(std::vector<std::string>(std::begin(coherences), std::end(coherences))));
   c->add_option("--forget", a->forget, "share of the fields' evidence that lives on to the next frame (default 0.8)")
       ->check(number(0, 0.999));
-  c->add_option("--teach", a->teach, "passes that teach the fields of a frame before it is rendered (default 2)")
+  c->add_option("--teach", a->teach, "passes that teach the fields of a frame before it is rendered (default 1)")
       ->check(whole(1, 4096));
   c->add_option("--guide", a->guide, "which subpaths the learned fields guide: both, camera or light (default both)")
       ->check(CLI::IsMember({"both", "camera", "light"}));
