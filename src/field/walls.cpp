@@ -82,16 +82,35 @@ struct Sight {
   std::vector<uint64_t> like, sees;
 };
 
+// A plane has to part so many pairs that would share a cell, and no larger share of them may see each other across it.
+constexpr int least_pairs = 16;
+constexpr float most_seen = 0.25f;
+
+// Pairs of other normals are asked only where enough of the same do not see each other for there to be a plane.
 Sight look(const Accel& accel, std::vector<Spot> spots, float lift) {
   Sight s{std::move(spots), {}, {}};
-  s.like.assign(s.spots.size(), 0), s.sees.assign(s.spots.size(), 0);
-  for (size_t i = 0; i < s.spots.size(); ++i)
+  const size_t n = s.spots.size();
+  s.like.assign(n, 0), s.sees.assign(n, 0);
+  const auto bit = [](size_t k) { return uint64_t(1) << k; };
+  const auto ask = [&](size_t i, size_t j) {
+    const Vec3 a = s.spots[i].p + lift * s.spots[i].n, b = s.spots[j].p + lift * s.spots[j].n;
+    if (accel.occluded(a, b - a, 1)) return false;
+    s.sees[i] |= bit(j), s.sees[j] |= bit(i);
+    return true;
+  };
+  std::vector<uint32_t> bins;
+  for (const Spot& spot : s.spots) bins.push_back(normal_bin(spot.n));
+  int hidden = 0;
+  for (size_t i = 0; i < n; ++i)
     for (size_t j = 0; j < i; ++j) {
-      if (normal_bin(s.spots[i].n) == normal_bin(s.spots[j].n))
-        s.like[i] |= uint64_t(1) << j, s.like[j] |= uint64_t(1) << i;
-      const Vec3 a = s.spots[i].p + lift * s.spots[i].n, b = s.spots[j].p + lift * s.spots[j].n;
-      if (!accel.occluded(a, b - a, 1)) s.sees[i] |= uint64_t(1) << j, s.sees[j] |= uint64_t(1) << i;
+      if (bins[i] != bins[j]) continue;
+      s.like[i] |= bit(j), s.like[j] |= bit(i);
+      hidden += !ask(i, j);
     }
+  if (float(hidden) <= (1 - most_seen) * least_pairs) return s;
+  for (size_t i = 0; i < n; ++i)
+    for (size_t j = 0; j < i; ++j)
+      if (bins[i] != bins[j]) ask(i, j);
   return s;
 }
 
@@ -104,8 +123,6 @@ struct Plane {
 // The plane that the most pairs of points lie on two sides of and do not see each other, where it parts points that
 // would share a cell, and next to none of these see each other.
 Plane best_plane(const Sight& s, std::vector<uint32_t> of, float edge) {
-  constexpr float most_seen = 0.25f;
-  constexpr int least_pairs = 16;
   const size_t n = of.size();
   Plane best;
   uint64_t all = 0;
