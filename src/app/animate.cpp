@@ -263,6 +263,15 @@ void write_figures(const Work& w) {
   if (!w.arguments.quiet) say(stdout, "{}.json\n{}.csv\n{}.svg\n", stem, stem, stem);
 }
 
+// An error that only they have does not hide that there was an interruption.
+void write_figures_so_far(const Work& w) {
+  try {
+    write_figures(w);
+  } catch (const Error& error) {
+    say(stderr, "ajar: warning: {}\n", error.what());
+  }
+}
+
 void print_notes(const Timeline& timeline, const Scene& scene) {
   for (const auto* notes : {&timeline.notes, &scene.notes})
     for (const std::string& n : *notes) say(stderr, "ajar: note: {}\n", n);
@@ -316,7 +325,7 @@ void run_animate(const AnimateArguments& a) {
     if (!w.to_do.empty()) render_frames(w);
   } catch (const Interrupted&) {
     if (!a.quiet) clear_line();
-    if (there + w.done > 0) write_figures(w);
+    if (there + w.done > 0) write_figures_so_far(w);
     throw;
   }
   if (!a.quiet) clear_line();

@@ -186,7 +186,7 @@ std::vector<FrameFigures> measure(const FramePattern& pattern, const Timeline& t
     out.push_back(measure_frame(path, image, timeline, f));
     const std::string name = reference ? frame_name(*reference, f) : "";
     if (!reference || !fs::exists(name)) continue;
-    Picture truth = select(read_picture(name), {"R", "G", "B"});
+    Picture truth = read_rgb(name);
     if (truth.width != image.width || truth.height != image.height)
       throw Error(fmt::format("--reference {}: is {}x{}, the frame {}x{}; use --size", name, truth.width, truth.height,
                               image.width, image.height));

@@ -112,12 +112,7 @@ void Log::write(const RenderState& state, bool last) {
 }
 
 Picture read_reference(const std::string& path, const Camera& camera) {
-  Picture picture = read_picture(path);
-  try {
-    picture = select(picture, {"R", "G", "B"});
-  } catch (const Error& error) {
-    throw Error(fmt::format("--reference {}: {}", path, error.what()));
-  }
+  Picture picture = read_rgb(path);
   require_comparable(picture, "--reference " + path);
   if (picture.width != camera.crop_width || picture.height != camera.crop_height)
     throw Error(fmt::format("--reference {}: is {}x{}, the render {}x{}; use --size", path, picture.width,

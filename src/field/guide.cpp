@@ -45,7 +45,7 @@ float breadth(const Lobe& lobe) {
     case LobeKind::ward:
       return 1 - lobe.ward.share * (1 - rough(std::min(lobe.ward.facets.alpha_u, lobe.ward.facets.alpha_v)));
     case LobeKind::principled:
-      return rough(sqr(lobe.principled.roughness));
+      return rough(sqr(lobe.principled.roughness) * lobe.principled.aspect);
     default:
       return 0;  // deltas
   }

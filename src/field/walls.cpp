@@ -149,16 +149,21 @@ Plane best_plane(const Sight& s, std::vector<uint32_t> of, float edge) {
   return best;
 }
 
+// Compartments so far, those still to be cut among them, and how many have their number.
+struct Sides {
+  int all = 1, numbered = 0;
+};
+
 // Cuts a compartment as often as pays; returns what leads to it: a cut's index, or ~side.
-int32_t cut(const Sight& s, const std::vector<uint32_t>& of, float edge, int& sides, std::vector<CellCut>& cuts) {
-  const Plane plane = sides < most_compartments ? best_plane(s, of, edge) : Plane{};
-  if (plane.axis < 0) return ~(sides - 1);
+int32_t cut(const Sight& s, const std::vector<uint32_t>& of, float edge, Sides& sides, std::vector<CellCut>& cuts) {
+  const Plane plane = sides.all < most_compartments ? best_plane(s, of, edge) : Plane{};
+  if (plane.axis < 0) return ~sides.numbered++;
+  ++sides.all;
   std::vector<uint32_t> below, above;
   for (const uint32_t i : of) (s.spots[i].p[plane.axis] < plane.at ? below : above).push_back(i);
   const int32_t here = int32_t(cuts.size());
   cuts.push_back({plane.at, plane.axis, 0, 0});
   const int32_t first = cut(s, below, edge, sides, cuts);
-  ++sides;
   const int32_t second = cut(s, above, edge, sides, cuts);
   cuts[size_t(here)].below = first, cuts[size_t(here)].above = second;
   return here;
@@ -174,7 +179,7 @@ void cut_along_walls(const Scene& scene, const Accel& accel, CellTable& table) {
     if (cubes[c].size() < 8) return;
     std::vector<uint32_t> of(cubes[c].size());
     std::iota(of.begin(), of.end(), 0);
-    int sides = 1;
+    Sides sides;
     cut(look(accel, cubes[c], table.width / 64), of, table.width, sides, cuts[c]);
   });
   for (size_t c = 0; c < cubes.size(); ++c) {

@@ -166,6 +166,19 @@ Picture develop(const Film& film) {
   return out;
 }
 
+Picture average(const Film& film, const std::vector<glm::dvec3>& sums, bool splats) {
+  Picture out{film.width, film.height, {"R", "G", "B"}, std::vector<float>(3 * film.pixels())};
+  const double splat_passes = film.passes + share_done(film);
+  const glm::ivec2 shift = tile_shift(film);
+  for (int y = 0; y < film.height; ++y)
+    for (int x = 0; x < film.width; ++x) {
+      const size_t i = size_t(y) * film.width + x;
+      const double n = splats ? splat_passes : film.passes + (is_done(film, shift, x, y) ? 1.0 : 0.0);
+      for (int c = 0; c < 3; ++c) out.pixels[3 * i + c] = n > 0 ? float(sums[i][c] / n) : 0;
+    }
+  return out;
+}
+
 Picture variance(const Film& film) {
   Picture out{
       film.width, film.height, {"Variance.R", "Variance.G", "Variance.B"}, std::vector<float>(3 * film.pixels())};

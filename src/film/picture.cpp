@@ -2,6 +2,7 @@
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
+#include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 
 #include <cstring>
@@ -85,16 +86,20 @@ std::vector<float> read_window(const std::string& path, OIIO::ImageInput& input)
     throw Error(fmt::format("{}: {}x{} pixels of {} channels cannot be read; is the file damaged?", path, spec.width,
                             spec.height, spec.nchannels));
   std::vector<float> pixels(size_t(spec.width) * size_t(spec.height) * size_t(spec.nchannels));
-  if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data()))
-    throw Error(fmt::format("{}: its pixels cannot be read ({}); the file is damaged or cut short, write it again",
-                            path, one_line(input.geterror())));
+  // Some readers say so where the file ends too early, others only leave an error.
+  if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, pixels.data()) || input.has_error()) {
+    const std::string why = one_line(input.geterror());
+    throw Error(fmt::format("{}: its pixels cannot be read{}; the file is damaged or cut short, write it again", path,
+                            why.empty() ? "" : " (" + why + ")"));
+  }
   return pixels;
 }
 
 bool is_encoded(const OIIO::ImageInput& input, int channel) {
   const OIIO::ImageSpec& spec = input.spec();
   return !spec.channelformat(channel).is_floating_point() && channel != spec.alpha_channel &&
-         std::string(input.format_name()) != "openexr" && spec.get_string_attribute("oiio:ColorSpace") != "Linear";
+         std::string(input.format_name()) != "openexr" &&
+         !OIIO::Strutil::iequals(spec.get_string_attribute("oiio:ColorSpace"), "linear");
 }
 
 }  // namespace
@@ -209,6 +214,31 @@ Picture select(const Picture& picture, const std::vector<std::string>& names) {
   for (size_t i = 0; i < count; ++i)
     for (const size_t c : from) selected.pixels.push_back(picture.pixels[i * picture.names.size() + c]);
   return selected;
+}
+
+std::array<size_t, 3> rgb_channels(const Picture& picture) {
+  const auto index = [&](const char* name) {
+    return size_t(std::find(picture.names.begin(), picture.names.end(), name) - picture.names.begin());
+  };
+  const size_t missing = picture.names.size();
+  const std::array<size_t, 3> rgb = {index("R"), index("G"), index("B")};
+  if (std::find(rgb.begin(), rgb.end(), missing) == rgb.end()) return rgb;
+  if (missing == 1) return {0, 0, 0};
+  if (const size_t grey = index("Y"); grey != missing && index("X") == missing) return {grey, grey, grey};
+  throw Error(fmt::format("channels R, G, B are missing (there are {}); write the image with these",
+                          fmt::join(picture.names, ", ")));
+}
+
+Picture read_rgb(const std::string& path) {
+  const Picture picture = read_picture(path);
+  try {
+    const auto [r, g, b] = rgb_channels(picture);
+    Picture out = select(picture, {picture.names[r], picture.names[g], picture.names[b]});
+    out.names = {"R", "G", "B"};
+    return out;
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", path, error.what()));
+  }
 }
 
 Picture crop(const Picture& picture, int x, int y, int width, int height) {

@@ -20,13 +20,6 @@ void splat(const Film& film, const Strategy& c, Pyramid::Layer& layer) {
     }
 }
 
-Picture average(const Film& film, const std::vector<glm::dvec3>& sum) {
-  Picture out{film.width, film.height, {"R", "G", "B"}, std::vector<float>(3 * film.pixels())};
-  for (size_t i = 0; i < sum.size(); ++i)
-    for (int c = 0; c < 3; ++c) out.pixels[3 * i + c] = float(sum[i][c] / std::max(1u, film.passes));
-  return out;
-}
-
 // Whether write_pyramid gives such names.
 bool is_layer(const std::string& name) {
   static const std::regex pattern("[sm][0-9]+t[0-9]+(-raw)?\\.exr");
@@ -64,8 +57,8 @@ void write_pyramid(const Pyramid& pyramid, const Film& film, const std::string& 
   clear_layers(folder);
   for (const auto& [st, layer] : pyramid.layers) {
     const std::string base = fmt::format("{}/{}{}t{}", folder, st.first < 0 ? 'm' : 's', std::abs(st.first), st.second);
-    write_exr(base + ".exr", average(film, layer.weighted), {}, false);
-    write_exr(base + "-raw.exr", average(film, layer.raw), {}, false);
+    write_exr(base + ".exr", average(film, layer.weighted, st.second == 1), {}, false);
+    write_exr(base + "-raw.exr", average(film, layer.raw, st.second == 1), {}, false);
   }
 }
 

@@ -127,6 +127,8 @@ void load_checkpoint(const std::string& path, const std::string& key, RenderStat
   if (state.pyramid.kept && kept == 0)
     throw Error(path + ": made without --techniques, whose images would lack its passes; leave --techniques out");
   read(r, state.pyramid);
+  for (const auto& [st, layer] : state.pyramid.layers)
+    r.require(layer.raw.size() == pixels && layer.weighted.size() == pixels);
   if (!state.pyramid.kept) state.pyramid = {};
   r.value(state.light_rate), r.value(state.effort);
   r.require(state.effort >= RenderState::least_effort && state.effort <= 1);

@@ -95,9 +95,9 @@ float share_in_sight(const Job& job, const Disc& disc, const std::vector<NearPho
   return float(seen) / sights;  // (K7)
 }
 
-// Sums over the merges at one camera vertex, by s.
+// Sums over the merges at one camera vertex, by s; the last, of all longer light subpaths, has no image (pyramid.h).
 struct Merged {
-  std::array<Rgb, Ledger::most + 1> raw{}, weighted{};
+  std::array<Rgb, most_vertices + 1> raw{}, weighted{};
 };
 
 // The probability of looking at merges for which rays must be traced, which would add so much to what was found before.
@@ -106,7 +106,7 @@ float chance_to_try(float adds, float found) {
 }
 
 void add_merged(const Merged& sums, int t, const Rgb& factor, Sample& sample, Scratch& scratch) {
-  for (int s = 2; s <= Ledger::most; ++s) {
+  for (int s = 2; s <= most_vertices; ++s) {
     const Rgb found = sums.weighted[size_t(s)] * factor;
     if (is_black(found) || !accept(found, sample, scratch)) continue;
     sample.value += found;
@@ -160,7 +160,7 @@ Merged sum_up(const Disc& disc, std::vector<NearPhoton>& near) {
   float sum = 0;
   std::erase_if(near, [&](const NearPhoton& n) { return !same_surface(disc.v, disc.radius, *n.photon); });
   for (NearPhoton& n : near) {
-    const size_t row = size_t(std::min(n.photon->s, Ledger::most));
+    const size_t row = size_t(std::min(n.photon->s, most_vertices));
     sums.raw[row] += n.found;
     sums.weighted[row] += n.found * n.weight;
     n.sum = sum += luminance(n.found) * n.weight;

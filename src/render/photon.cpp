@@ -32,7 +32,9 @@ void follow(const Job& job, Sample& sample, Scratch& scratch, Walk walk, bool ga
   Surface surface;
   const auto add = [&](int t, const Rgb& found) {
     sample.value += found;
-    gain(scratch, 0, t, found * sample.filter);
+    const Rgb filtered = found * sample.filter;
+    gain(scratch, 0, t, filtered);
+    if (scratch.strategies) scratch.strategies->push_back({0, t, Vec2(sample.x, sample.y), filtered, filtered});
     charge_join(scratch, 0, t);
   };
   do {

@@ -45,13 +45,13 @@ std::optional<Json> find_run(const Bench& bench, const Stand& stand, const Metho
   Json file = read_json(path, "delete it, and the run is made again");
   if (!file.is_object() || !file.contains("run") || !file.contains("reference"))
     throw Error(fmt::format("{}: is no run of a bench; delete it", path.string()));
-  if (file["reference"] != stand.reference_hash)
-    throw Error(fmt::format("{}: was measured against another reference; name another folder with -o, or delete {}",
-                            path.string(), path.parent_path().string()));
   if (file.value("content", "") != stand.content)
     throw Error(fmt::format(
         "{}: a file of the scene has changed since; name another folder with -o, or delete {} and {}", path.string(),
         path.parent_path().string(), (bench.options.folder / "techniques" / stand.scene->name).string()));
+  if (file["reference"] != stand.reference_hash)
+    throw Error(fmt::format("{}: was measured against another reference; name another folder with -o, or delete {}",
+                            path.string(), path.parent_path().string()));
   return file["run"];
 }
 
@@ -156,7 +156,7 @@ void make_techniques(Bench& bench, const Stand& stand, const LoadedScene& loaded
     render(*loaded.scene, *loaded.accel, racer.options, racer.state,
            [&](const RenderState&) { return watch(bench, stand, racer, bench.done); });
     if (bench.stopped || racer.state.pyramid.layers.empty()) continue;
-    const fs::path aside = folder.string() + ".tmp";
+    const fs::path aside = folder.parent_path() / ("." + method.name + ".tmp");  // a name that no method has
     make_folder(aside.string());
     write_pyramid(racer.state.pyramid, racer.state.film, aside.string());
     std::error_code error;

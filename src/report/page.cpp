@@ -39,16 +39,6 @@ std::string read_bytes(const std::filesystem::path& path) {
   return bytes.str();
 }
 
-Picture read_rgb(const std::string& path) {
-  const Picture picture = read_picture(path);
-  try {
-    const auto channels = rgb_channels(picture);
-    return select(picture, {picture.names[channels[0]], picture.names[channels[1]], picture.names[channels[2]]});
-  } catch (const Error& error) {
-    throw Error(fmt::format("{}: {}", path, error.what()));
-  }
-}
-
 struct Embedder {
   std::filesystem::path dir;
   Embedded out;
@@ -181,7 +171,11 @@ void write_report(const json& results, const std::filesystem::path& dir) {
                                  {"files", inline_json(embedded.index)},
                                  {"images", embedded.elements},
                                  {"script", fmt::format("{}", fmt::join(page::scripts, ""))}}));
-  if (!curves.empty()) write_text((dir / "curves.svg").string(), curves);
+  std::error_code ignored;
+  if (curves.empty())
+    fs::remove(dir / "curves.svg", ignored);  // of other results
+  else
+    write_text((dir / "curves.svg").string(), curves);
 }
 
 json read_results(const std::filesystem::path& dir) {

@@ -36,19 +36,6 @@ void filter_columns(const Plane& in, std::span<const double> kernel, Plane& out)
 
 }  // namespace
 
-std::array<size_t, 3> rgb_channels(const Picture& picture) {
-  const auto index = [&](const char* name) {
-    return size_t(std::find(picture.names.begin(), picture.names.end(), name) - picture.names.begin());
-  };
-  const size_t missing = picture.names.size();
-  const std::array<size_t, 3> rgb = {index("R"), index("G"), index("B")};
-  if (std::find(rgb.begin(), rgb.end(), missing) == rgb.end()) return rgb;
-  if (missing == 1) return {0, 0, 0};
-  if (const size_t grey = index("Y"); grey != missing) return {grey, grey, grey};
-  throw Error(fmt::format("channels R, G, B are missing (there are {}); write the image with these",
-                          fmt::join(picture.names, ", ")));
-}
-
 std::array<Plane, 3> rgb_planes(const Picture& picture) {
   const std::array<size_t, 3> from = rgb_channels(picture);
   std::array<Plane, 3> planes;

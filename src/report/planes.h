@@ -24,9 +24,7 @@ inline Plane make_plane(int width, int height) {
   return {width, height, std::vector<double>(size_t(width) * size_t(height))};
 }
 
-/// Indices of the channels R, G, B; thrice that of the only channel or of Y in a grey picture. Throws Error without
-/// them.
-std::array<size_t, 3> rgb_channels(const Picture& picture);
+/// Of rgb_channels; throws Error without them.
 std::array<Plane, 3> rgb_planes(const Picture& picture);
 /// Relative luminance of the three, linear.
 Plane luminance_plane(const Picture& picture);

@@ -75,7 +75,7 @@ bool read_batch(const fs::path& path, const std::string& key, Part& part) {
   const Metadata data = read_metadata(path.string());
   const auto found = data.find("ajar:key");
   if (found == data.end() || found->second != Metadata::mapped_type(key)) return false;
-  part.add({select(read_picture(path.string()), {"R", "G", "B"}), std::get<double>(data.at("ajar:spp"))}, data);
+  part.add({read_rgb(path.string()), std::get<double>(data.at("ajar:spp"))}, data);
   return true;
 }
 
@@ -184,7 +184,7 @@ void require_light(const Picture& image, const fs::path& path) {
 }
 
 Picture read_reference(const fs::path& path, const Camera& camera) {
-  Picture image = select(read_picture(path.string()), {"R", "G", "B"});
+  Picture image = read_rgb(path.string());
   require_comparable(image, path.string());
   require_light(image, path);
   if (image.width != camera.crop_width || image.height != camera.crop_height)

@@ -94,7 +94,9 @@ std::optional<TimeRatio> time_ratio(const Curve& curve, const Curve& baseline) {
   const double error = std::max(curve.back().error, baseline.back().error);
   const auto own = time_to(curve, error), other = time_to(baseline, error);
   if (!own || !other || !(own->time > 0)) return {};
-  return TimeRatio{other->time / own->time, own->at_most || other->at_most};
+  const auto [faster, slower] = own->time < other->time ? std::pair(own, other) : std::pair(other, own);
+  if (slower->at_most) return {};
+  return TimeRatio{other->time / own->time, faster->at_most};
 }
 
 std::string verdict(const std::vector<double>& error_ratios) {

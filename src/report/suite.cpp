@@ -180,6 +180,7 @@ std::string read_name(const Element& e, std::set<std::string>& names) {
   constexpr const char* letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.+";
   if (name.find_first_not_of(letters) != std::string::npos || name[0] == '.')
     fail(given, "names become file names: use letters, digits, - _ + and dots only, no dot first");
+  if (name.size() > 100) fail(given, "names become file names: use 100 letters at most");
   if (name == "reference") fail(given, "the reference's image has this name; choose a different one");
   if (!names.insert(name).second) fail(given, "another has this name; choose a different one");
   return name;

@@ -54,6 +54,9 @@ Layout layout_of(const OIIO::ImageSpec& spec) {
   layout.alpha = spec.alpha_channel;
   if (r >= 0 && g >= 0 && b >= 0) {
     layout.color[0] = r, layout.color[1] = g, layout.color[2] = b;
+  } else if (const int x = spec.channelindex("X"), y = spec.channelindex("Y"), z = spec.channelindex("Z");
+             x >= 0 && y >= 0 && z >= 0) {  // a map of normals
+    layout.color[0] = x, layout.color[1] = y, layout.color[2] = z;
   } else if (spec.nchannels < 3 || layout.alpha == 1 || spec.channelindex("Y") >= 0) {
     layout.colors = 1;
     layout.color[0] = std::max(spec.channelindex("Y"), 0);

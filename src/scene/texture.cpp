@@ -113,9 +113,10 @@ Rgb eval_attribute(const Scene& scene, const Texture& texture, const Surface& at
   bool of_faces;
   const std::span<const Rgb> values = values_of(mesh, texture.attribute, of_faces);
   if (values.empty()) return Rgb(0);
-  if (of_faces) return values[at.prim];
+  if (of_faces) return glm::max(values[at.prim], Rgb(0));
   const glm::uvec3 t = mesh.triangles[at.prim];
-  return values[t.x] * (1 - at.bary.x - at.bary.y) + values[t.y] * at.bary.x + values[t.z] * at.bary.y;
+  const Rgb between = values[t.x] * (1 - at.bary.x - at.bary.y) + values[t.y] * at.bary.x + values[t.z] * at.bary.y;
+  return glm::max(between, Rgb(0));
 }
 
 float reduce(const Rgb& c) { return c.x == c.y && c.y == c.z ? c.x : luminance(c); }
@@ -178,7 +179,7 @@ Rgb mean_attribute(const Scene& scene, const Texture& texture) {
   bool of_faces;
   for (const Mesh& mesh : scene.meshes) {
     const std::span<const Rgb> values = values_of(mesh, texture.attribute, of_faces);
-    for (const Rgb& c : values) sum += glm::dvec3(c);
+    for (const Rgb& c : values) sum += glm::dvec3(glm::max(c, Rgb(0)));
     n += values.size();
   }
   return n > 0 ? Rgb(sum / double(n)) : Rgb(0);

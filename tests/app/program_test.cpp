@@ -127,6 +127,10 @@ TEST_F(Program, InterruptedAnimationsTellOfTheFramesThatAreThere) {
   EXPECT_NE(said().find("the same command goes on from there"), std::string::npos) << said();
   for (const char* name : {"f/animation.json", "f/animation.csv", "f/animation.svg"})
     EXPECT_TRUE(is_there(name)) << name;
+  fs::create_directories(folder / "g/animation.json");
+  EXPECT_EQ(run(stopped(frames + "--integrator path -o g/f_%d.exr", "g/f_0.exr", "INT")), 130) << said();
+  EXPECT_NE(said().find("ajar: warning: g/animation.json"), std::string::npos) << said();
+  EXPECT_NE(said().find("the same command goes on from there"), std::string::npos) << said();
 }
 
 TEST_F(Program, MistypedOptionsAreToldFirst) {

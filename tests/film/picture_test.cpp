@@ -218,6 +218,16 @@ TEST_F(PictureFile, DamagedFilesAreErrors) {
     EXPECT_NE(error.find("b.exr: "), std::string::npos) << size << ": " << error;
     EXPECT_EQ(error.find('\n'), std::string::npos);
   }
+  std::vector<uint8_t> grey(64 * 64, 100);
+  for (const char* name : {"d.tif", "d.jpg"}) {  // their readers give pixels, and leave an error
+    auto output = OIIO::ImageOutput::create(file(name));
+    ASSERT_TRUE(output->open(file(name), OIIO::ImageSpec(64, 64, 1, OIIO::TypeDesc::UINT8)) &&
+                output->write_image(OIIO::TypeDesc::UINT8, grey.data()) && output->close());
+    const std::string all = read_bytes(file(name));
+    EXPECT_EQ(error_of([&] { read_picture(file(name)); }), "");
+    write_bytes(file(name), all.substr(0, all.size() * 6 / 10));
+    EXPECT_NE(error_of([&] { read_picture(file(name)); }).find(name), std::string::npos);
+  }
   write_bytes(file("c.png"), "no image");
   EXPECT_NE(error_of([&] { read_picture(file("c.png")); }).find("c.png: cannot be read"), std::string::npos);
   EXPECT_NE(error_of([&] { read_picture(file("none.exr")); }).find("no such file"), std::string::npos);
@@ -282,6 +292,24 @@ TEST_F(PictureFile, SixteenBitsAreDecodedAlphaIsNot) {
   EXPECT_NEAR(in.pixels[0], 1, 1e-6);
   EXPECT_NEAR(in.pixels[1], decode_srgb(32768.0 / 65535), 1e-6);
   EXPECT_NEAR(in.pixels[3], 32768.0 / 65535, 1e-6);
+}
+
+TEST_F(PictureFile, BytesThatSayTheyAreLinearAre) {
+  OIIO::ImageSpec spec(1, 1, 3, OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:ColorSpace", "Linear");
+  spec.attribute("oiio:Gamma", 1.0f);
+  const uint8_t pixel[3] = {188, 0, 255};
+  auto output = OIIO::ImageOutput::create("png");
+  ASSERT_TRUE(output->open(file("a.png"), spec) && output->write_image(OIIO::TypeDesc::UINT8, pixel) &&
+              output->close());
+  EXPECT_NEAR(read_picture(file("a.png")).pixels[0], 188.0 / 255, 1e-6);
+}
+
+TEST_F(PictureFile, GreyOnesHaveThreeEqualChannels) {
+  write_exr(file("a.exr"), Picture{1, 1, {"Y"}, {0.25f}}, {}, false);
+  EXPECT_EQ(read_rgb(file("a.exr")).pixels, (std::vector<float>{0.25f, 0.25f, 0.25f}));
+  write_exr(file("b.exr"), Picture{1, 1, {"X", "Y", "Z"}, {1, 2, 3}}, {}, false);
+  EXPECT_NE(error_of([&] { read_rgb(file("b.exr")); }).find("b.exr: channels R, G, B are missing"), std::string::npos);
 }
 
 /// 4x3 data window at (x, y) in a display window of 8x6 whose corner is (10, 20); values count 1, 2, 3 ...

@@ -104,6 +104,9 @@ TEST(TimeRatio, ComparesTimesToTheErrorThatBothReach) {
   EXPECT_TRUE(bound->bound);
   EXPECT_NEAR(bound->value, 16, 1e-12) << "there at the first point, after 1 s at most; the baseline after 16 s";
   EXPECT_FALSE(time_ratio({}, curve(1, 4)));
+  const Curve quick = {{1, 16, 1}, {2, 1, 2}}, late = {{8, 0.5, 8}, {16, 1, 16}};
+  EXPECT_FALSE(time_ratio(quick, late)) << "the other may have been there sooner than its first point";
+  EXPECT_FALSE(time_ratio(late, quick));
 }
 
 TEST(Verdict, NeedsTheWholeSpreadOnOneSide) {

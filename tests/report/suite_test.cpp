@@ -174,6 +174,7 @@ TEST_F(SuiteFile, WrongTypesAndValues) {
   expect_error("/methods/0/field_memory", 100, "field_memory: is 100");
   expect_error("/methods/1/name", "p", "methods \"p\".name: another has this name");
   for (const char* name : {"../p", "..p", "a/b"}) expect_error("/methods/1/name", name, "names become file names");
+  expect_error("/methods/1/name", std::string(101, 'p'), "use 100 letters at most");
   expect_error("/methods/0/name", "reference", "the reference's image has this name");
   expect_error("/scenes/1/name", "one", "another has this name");
   expect_error("/scenes/0/size", Json{32}, "scenes \"one\".size: write [WIDTH, HEIGHT]");

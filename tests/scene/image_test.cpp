@@ -68,6 +68,19 @@ TEST_F(ImageFile, EightBitFormats) {
   }
 }
 
+// Maps of normals are kept so.
+TEST_F(ImageFile, ChannelsXyzAreNoGrey) {
+  const std::string path = (folder / "n.exr").string();
+  OIIO::ImageSpec spec(1, 1, 3, OIIO::TypeDesc::FLOAT);
+  spec.channelnames = {"X", "Y", "Z"};
+  const float values[3] = {0.25f, 0.5f, 0.75f};
+  auto out = OIIO::ImageOutput::create(path);
+  ASSERT_TRUE(out->open(path, spec) && out->write_image(OIIO::TypeDesc::FLOAT, values) && out->close());
+  const Image image = load_image(path, true);
+  EXPECT_EQ(image.channels, 3);
+  EXPECT_EQ(texel(image, 0, 0), Rgb(0.25f, 0.5f, 0.75f));
+}
+
 TEST_F(ImageFile, GreyAlphaAndSixteenBit) {
   const Image grey = load_image(write<uint8_t>("g.png", 2, 1, 1, OIIO::TypeDesc::UINT8, {0, 188}), false);
   EXPECT_EQ(grey.channels, 1);

@@ -46,7 +46,7 @@ struct Cell {
   Frame frame;                  ///< its strata are about frame.n
   Vec3 center{0};               ///< its strata are as seen from here
   float seen = 0;               ///< vertices since it was made
-  uint32_t region = no_region;  ///< the top-level cell that it is part of, by number (views.h)
+  uint32_t region = no_region;  ///< of the top-level cell that it is part of (views.h)
 };
 
 /// How the scene is divided into cells and a cell's hemisphere into strata (docs/method.md, "Structures").

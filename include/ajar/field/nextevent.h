@@ -10,7 +10,7 @@ namespace ajar {
 /// Draws a piece of the lights for the vertex at p, where it does not take a sky whole; u in [0,1). False where none is
 /// to be asked for. place is set where one was chosen, though it turned out to be of no use, else none.
 bool choose_light(const Scene& scene, const Guide& guide, const Vec3& p, float u, uint32_t& place, float& pdf);
-/// Whether choose_light needs its number.
+/// Whether sample_next_event needs u_choice.
 bool chooses_light(const Scene& scene, const Guide& guide);
 /// Probability of a piece.
 float light_pdf(const Scene& scene, const Guide& guide, const Vec3& p, uint32_t place);

@@ -11,7 +11,8 @@
 
 namespace ajar {
 
-/// Regions are the cells of the top level. Lists hold a value for each pair of them, by pair_index.
+/// Regions are the cells of the top level; where there are more of these than memory has room for, several share one.
+/// Lists hold a value for each pair of them, by pair_index.
 struct Views {
   uint32_t regions = 0;
   std::vector<float> tried, seen;  ///< joins so far, older ones counting less, and those of them that were free

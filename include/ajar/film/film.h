@@ -75,6 +75,9 @@ void finish_pass(Film& film);
 /// Linear RGB estimate, its fireflies limited where the film is to; includes the chunks of the pass at work that are
 /// done.
 Picture develop(const Film& film);
+/// The image (R, G, B) of sums over passes, that at work among them, one for each pixel: of what camera samples brought
+/// their pixels, or of what fell on pixels from all of the film (splats).
+Picture average(const Film& film, const std::vector<glm::dvec3>& sums, bool splats);
 /// Variance of the estimate per pixel and channel, from the spread of the passes; zero before the second pass. Exact in
 /// expectation for independent numbers. Passes of a low-discrepancy sequence err less together than apart, so there it
 /// is too large (1.1 to 2 times measured in easy scenes, docs/results/error.md), and tests that read it milder. The

@@ -2,6 +2,7 @@
 // Leaves: EXR and PNG files, written aside and renamed; and what such files hold.
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
 #include <variant>
@@ -41,6 +42,11 @@ Picture read_picture(const std::string& path);
 Metadata read_metadata(const std::string& path);
 /// The same pixels with the named channels only, in that order; throws Error where one is missing.
 Picture select(const Picture& picture, const std::vector<std::string>& names);
+/// Indices of the channels R, G, B; thrice that of the only channel or of Y in a grey picture. Throws Error without
+/// them.
+std::array<size_t, 3> rgb_channels(const Picture& picture);
+/// Reads R, G and B, which a grey picture has thrice. Throws Error that names the file.
+Picture read_rgb(const std::string& path);
 /// The part of width x height pixels whose top left pixel is (x, y); throws Error where it does not lie in the picture.
 Picture crop(const Picture& picture, int x, int y, int width, int height);
 

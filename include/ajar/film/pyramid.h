@@ -22,7 +22,7 @@ inline constexpr int most_vertices = 11;
 
 struct Pyramid {
   struct Layer {
-    std::vector<glm::dvec3> raw, weighted;  ///< sums over passes
+    std::vector<glm::dvec3> raw, weighted;  ///< sums over passes, that at work among them
   };
   bool kept = false;  ///< from the first pass on
   std::map<std::pair<int, int>, Layer> layers;
@@ -31,7 +31,8 @@ struct Pyramid {
 /// Adds the contributions of consecutive chunks in their order, but for those of more than most_vertices.
 void merge(Pyramid& pyramid, const Film& film, const std::vector<std::vector<Strategy>>& chunks);
 /// Writes DIR/s1t2.exr ... (weighted) and DIR/s1t2-raw.exr ..., m2t2.exr where merged, in place of all that are there.
-/// The weighted ones add up to the image of paths of so many vertices. Throws Error.
+/// The weighted ones add up to the image of paths of so many vertices, but for what limits take from it and for virtual
+/// point lights, which have none (vpl, plain-vpl). Throws Error.
 void write_pyramid(const Pyramid& pyramid, const Film& film, const std::string& folder);
 
 }  // namespace ajar

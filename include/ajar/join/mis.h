@@ -41,7 +41,7 @@ double mis_weight(Heuristic h, const End& light, const End& camera, const Shares
 double mis_of_camera(Heuristic h, const End& light, const End& camera, const Shares& shares);
 
 /// What one side of a merge contributes to the sum over the other strategies, relative to a merge's own density over
-/// its MergeEnd::merge, while the density of going back is not known yet: fixed + slope * raise(h, density).
+/// its End::merge, while the density of going back is not known yet: fixed + slope * raise(h, density).
 struct MergeSide {
   double fixed = 0, slope = 0;
 };

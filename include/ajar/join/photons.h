@@ -35,7 +35,8 @@ using Photons = std::vector<Photon>;
 
 /// Adds the vertices of a light subpath at which it can be merged, with s >= 2. share: of the walk.
 void add_photons(Photons& photons, const Subpath& light, Heuristic h, double inner, double share);
-/// Puts all into the map, which forgets those that it held. Within a cell they keep their order.
+/// Puts all into the map, which forgets those that it held. Within a cell they keep their order. Throws Error
+/// from 2^31 of them on.
 void fill(PhotonMap& map, const Merging& merging, const std::vector<const Photons*>& lists);
 
 /// Buckets that hold all photons within the radius of a place, each once: of cells of two levels at most, 27 of the

@@ -25,7 +25,7 @@ struct LightStore {
     float flux = 0;     ///< luminance that it scatters, see Block
     float worth = 0;    ///< what the fields expect it to bring to the image, direct view aside
   };
-  /// What a choice reads of so many places, side by side. A block is an even sample of all places.
+  /// What a choice reads of so many places, side by side.
   static constexpr uint32_t width = 32, runs = 8;
   using Values = std::array<float, width>;  ///< of the places of a block; every eighth from one on makes a run
   using Sums = std::array<float, runs>;     ///< of the runs up to and with each
@@ -44,7 +44,7 @@ struct LightStore {
   };
   std::vector<Vertex> vertices;
   std::vector<Place> places;
-  std::vector<Block> blocks;  ///< place i is in block i % blocks, at i / blocks
+  std::vector<Block> blocks;  ///< of places as finish() put them
   uint32_t paths = 0;         ///< light subpaths that were tried, those that brought no vertex too
 
   const Vertex& vertex(const Place& at) const { return vertices[at.vertex]; }
@@ -72,9 +72,11 @@ struct StoreChoice {
 void clear(LightStore& store);
 /// share: of the walk.
 void add(LightStore& store, const Subpath& light, double share);
-/// Makes the blocks, when all is added.
+/// Makes the blocks, when all is added: each an even sample of all places, place i in block i % blocks, at i / blocks.
+/// For choose().
 void finish(LightStore& store);
-/// The same with what near of each place is to be.
+/// Makes blocks of neighbours, with what near of each place is to be: place i in block i / width, at i % width. For
+/// expect_all(), choose_some() and learn().
 void finish(LightStore& store, std::span<const float> near);
 /// Adds all of another store, before the blocks are made.
 void append(LightStore& store, const LightStore& more);

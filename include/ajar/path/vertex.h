@@ -19,7 +19,7 @@ struct Vertex {
   Rgb beta{0};  ///< throughput that arrives here, divided by the densities up to here; vertex 0: emitted over density
   float back = 0;   ///< solid-angle density here of the direction back times this = area density at the vertex before
   double own = 0;   ///< area density of this vertex as its own side generated it (solid angle when infinite)
-  double sum = 0;   ///< S of the vertex *before* this one, mis.h (R3)
+  double sum = 0;   ///< S of the vertex *before* this one, prefix.h (R3); vertex 0: its own
   float merge = 0;  ///< merge_density here (walk.h), on the camera's side times what the merge counts for
   bool delta = false;     ///< the subpath went on from here by a delta event
   bool seen = false;      ///< by the lens, itself or by way of delta events; camera subpaths

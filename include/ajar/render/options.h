@@ -45,10 +45,11 @@ inline constexpr int deepest = 4096;
 std::vector<std::string> integrator_names();
 /// Whether it learns fields; throws Error for an unknown integrator.
 bool is_guided(const std::string& integrator);
-/// Whether anything is learned.
+/// Whether anything is learned; throws Error for an unknown integrator, as the next.
 bool learns(const RenderOptions& options);
 /// Whether path tracing takes over from a guided integrator where it is seen to need less time to equal error (L2):
-/// RenderOptions::leaves_out, as long as nobody asks for images of strategies, or for fields of another kind.
+/// RenderOptions::leaves_out, as long as nobody asks for images of strategies, or for fields of another kind. Never
+/// from vpl.
 bool may_leave_out(const RenderOptions& options);
 /// Whether it merges light vertices with camera vertices; throws Error for an unknown integrator.
 bool is_merging(const std::string& integrator);
@@ -57,7 +58,8 @@ bool has_strategies(const std::string& integrator);
 /// Whether several of its strategies find a path, so that RenderOptions::heuristic matters; throws Error for an unknown
 /// integrator.
 bool weighs_strategies(const std::string& integrator);
-/// What its fields are learned with: an integrator without light subpaths guides the camera's alone.
+/// What its fields are learned with: an integrator without light subpaths guides the camera's alone. Throws Error for
+/// an unknown integrator.
 LearnOptions learn_options(const RenderOptions& options);
 
 }  // namespace ajar

@@ -31,7 +31,7 @@ struct SequenceFigures {
 };
 SequenceFigures mean_of(const std::vector<FrameFigures>& frames);
 
-/// One object: "mean" and "frames". Unknown figures are null.
+/// One object: "frames_done", "mean" and "frames". Unknown figures are null.
 std::string sequence_json(const std::vector<FrameFigures>& frames);
 /// A line of names, and one of each frame; unknown figures are left empty.
 std::string sequence_csv(const std::vector<FrameFigures>& frames);

@@ -42,7 +42,8 @@ struct Reached {
 /// Nothing where the last point is above the error: no curve is extrapolated.
 std::optional<Reached> time_to(const Curve& curve, double error);
 
-/// How many times as long the baseline needs to the error that both reach, which is the larger of their last.
+/// How many times as long the baseline needs to the error that both reach, which is the larger of their last. Nothing
+/// where the slower one was there before its first point, since it may be the faster one.
 struct TimeRatio {
   double value = 1;
   bool bound = false;  ///< the faster one was there before its first point: the truth is farther from 1

@@ -57,7 +57,8 @@ struct Suite {
 /// Throws Error that names file, element and cure.
 Suite load_suite(const std::filesystem::path& path, bool quick);
 
-/// What decides the figures, for telling whether two suites are the same: all but the title and where files lie.
+/// What decides the figures, for telling whether two suites are the same: all but the title and where files lie, and
+/// but the references, which records know by their bytes.
 nlohmann::ordered_json to_json(const Suite& suite);
 nlohmann::ordered_json to_json(const Budget& budget);
 /// The options that a suite may set: all of them, or the integrator and those that differ from their defaults (which is

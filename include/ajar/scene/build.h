@@ -10,7 +10,7 @@
 namespace ajar {
 
 /// Puts the camera of a scene that has none where Mitsuba does: it looks along +z, from so far before the scene that
-/// its longest side fills 45 degrees. False where the scene has no extent.
+/// its longest side fills 45 degrees; with Mitsuba's filter, a Gaussian. False where the scene has no extent.
 bool add_camera(Scene& scene);
 
 // Parts. They add to a scene and return the index of what they added; call finish() at the end. Metres, y is up.

@@ -14,14 +14,15 @@ Surface make_surface(const Scene& scene, const Hit& hit, const Vec3& ray_o, cons
 /// (u, v) of a hit, as textures read them.
 Vec2 texture_point(const Scene& scene, uint32_t shape, uint32_t prim, const Vec2& bary);
 /// A point uniform by area on a shape that emits; u in [0,1)^2. pdf is the exact density per area, area_pdf of the same
-/// point; 0 where the shape has no area. Fills p, error, ng, uv, bary, shape, prim. (Cylinders under a transform that
-/// is not a similarity about their axis: uniform in angle and height, with the area density that this has.)
+/// point; 0 where the shape has no area. Fills p, error, ng, uv, shape, prim, and of meshes bary. (Cylinders under a
+/// transform that is not a similarity about their axis: uniform in angle and height, with the area density that this
+/// has.)
 Surface sample_area(const Scene& scene, uint32_t shape, const Vec2& u, float& pdf);
 /// The same on one triangle of a mesh.
 Surface sample_triangle(const Scene& scene, uint32_t shape, uint32_t prim, const Vec2& u, float& pdf);
 /// Density per area with which sample_area finds this point.
 float area_pdf(const Scene& scene, uint32_t shape, uint32_t prim, const Vec2& uv);
-/// World area of a shape [m^2].
+/// World area of a shape [m^2]; of one in a shapegroup, the group's.
 double area(const Scene& scene, uint32_t shape);
 /// Area of a triangle of a mesh, never NaN.
 float triangle_area(const Mesh& mesh, uint32_t triangle);

@@ -86,7 +86,8 @@ size_t bytes(const LightTree& tree);
 struct Receiver {
   Vec3 p{0}, n{0};
 };
-/// Bound of what the receiver gets from the pieces below a node, up to a factor that all nodes share.
+/// Bound of what the receiver gets from the pieces below a node, up to a factor that all nodes share; by uniform and
+/// power choice the node's weight.
 float importance(const LightTree& tree, uint32_t node, const Receiver& at);
 /// Draws a piece below the node in proportion to bounds of what the receiver gets from it; u becomes uniform again, pdf
 /// the probability. False where none can light the receiver.

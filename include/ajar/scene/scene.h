@@ -112,7 +112,9 @@ struct Scene {
   float radius = 1;
 };
 
-/// Computes what is derived (areas, bounds, light choice); call once after building or changing a scene.
+/// Computes what is derived (areas, bounds, light choice); call once after building or changing a scene. Throws Error
+/// where something reaches farther than 1e18 units, where an environment's transform cannot be inverted, and for bsdfs
+/// that cannot be (one that is part of itself).
 void finish(Scene& scene);
 /// Has next-event estimation choose another way; of a finished scene. learned is tree, for fields to do better.
 void set_light_choice(Scene& scene, LightChoice choice);

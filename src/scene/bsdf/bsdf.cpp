@@ -51,7 +51,7 @@ float roughness(const Lobe& lobe) {
     case LobeKind::ward:
       return lobe.ward.share > 0 ? narrower(lobe.ward.facets) : 1;
     case LobeKind::principled:
-      return std::min(sqr(lobe.principled.roughness),
+      return std::min(narrower(facets(lobe.principled)),
                       lobe.principled.clearcoat > 0 ? lobe.principled.clearcoat_alpha : 1);
     default:
       return 1;

@@ -88,6 +88,53 @@ std::string read_bytes(const std::string& path) {
   return bytes;
 }
 
+namespace {
+
+// Polygons of more corners are not looked at: that takes their cube in time.
+constexpr size_t most_corners = 256;
+
+// Whether the triangles of a fan all turn as it does on the whole, whose normal is n.
+bool is_fan(const Mesh& mesh, std::span<const uint32_t> c, const dvec3& n) {
+  for (size_t i = 2; i < c.size(); ++i)
+    if (glm::dot(face_cross(mesh, {c[0], c[i - 1], c[i]}), n) < 0) return false;
+  return true;
+}
+
+bool is_inside(const Mesh& mesh, const glm::uvec3& t, const dvec3& n, const dvec3& p) {
+  for (int k = 0; k < 3; ++k) {
+    const dvec3 a(mesh.positions[t[k]]), b(mesh.positions[t[(k + 1) % 3]]);
+    if (p == a || glm::dot(glm::cross(b - a, p - a), n) < 0) return false;
+  }
+  return true;
+}
+
+glm::uvec3 around(std::span<const uint32_t> c, size_t i) {
+  return {c[(i + c.size() - 1) % c.size()], c[i], c[(i + 1) % c.size()]};
+}
+
+// A corner whose triangle lies in the polygon and holds no other corner; the first where there is none.
+size_t find_ear(const Mesh& mesh, std::span<const uint32_t> c, const dvec3& n) {
+  const auto holds_none = [&](const glm::uvec3& t) {
+    return std::none_of(c.begin(), c.end(),
+                        [&](uint32_t v) { return is_inside(mesh, t, n, dvec3(mesh.positions[v])); });
+  };
+  for (size_t i = 0; i < c.size(); ++i)
+    if (const glm::uvec3 t = around(c, i); glm::dot(face_cross(mesh, t), n) > 0 && holds_none(t)) return i;
+  return 0;
+}
+
+// Ear by ear (Meisters 1975, Polygons Have Ears).
+void add_concave(Mesh& mesh, std::vector<uint32_t> c, const dvec3& n) {
+  while (c.size() > 3) {
+    const size_t i = find_ear(mesh, c, n);
+    mesh.triangles.push_back(around(c, i));
+    c.erase(c.begin() + std::ptrdiff_t(i));
+  }
+  mesh.triangles.push_back({c[0], c[1], c[2]});
+}
+
+}  // namespace
+
 void add_polygon(Mesh& mesh, std::span<const uint32_t> c) {
   if (c.size() == 4) {
     const glm::uvec3 a(c[0], c[1], c[2]), b(c[0], c[2], c[3]);
@@ -95,6 +142,11 @@ void add_polygon(Mesh& mesh, std::span<const uint32_t> c) {
       mesh.triangles.insert(mesh.triangles.end(), {{c[1], c[2], c[3]}, {c[1], c[3], c[0]}});
       return;
     }
+  }
+  if (c.size() > 4 && c.size() <= most_corners) {
+    dvec3 n(0);  // twice the area
+    for (size_t i = 2; i < c.size(); ++i) n += face_cross(mesh, {c[0], c[i - 1], c[i]});
+    if (!is_fan(mesh, c, n)) return add_concave(mesh, {c.begin(), c.end()}, n);
   }
   for (size_t i = 2; i < c.size(); ++i) mesh.triangles.push_back({c[0], c[i - 1], c[i]});
 }

@@ -248,6 +248,11 @@ void note_limits(Loader& loader, const Node& node, const Shown& shown, const Mes
       note(loader, node, "its mesh attributes make reflectances above 1: there they become 1");
 }
 
+void note_negative(Loader& loader, const Node& node, const std::string& name, const std::vector<Rgb>& values) {
+  if (std::any_of(values.begin(), values.end(), [](const Rgb& c) { return std::min({c.x, c.y, c.z}) < 0; }))
+    note(loader, node, fmt::format("the mesh attribute \"{}\" has negative numbers: they show as 0", name));
+}
+
 // What the textures of a shape show has to be in its mesh.
 void check_attributes(Loader& loader, const Node& node, const Shape& shape) {
   const Scene& scene = loader.scene;
@@ -259,10 +264,12 @@ void check_attributes(Loader& loader, const Node& node, const Shape& shape) {
   if (shape.kind == ShapeKind::mesh) {
     const Mesh& mesh = scene.meshes[shape.mesh];
     if (!mesh.colors.empty()) there.insert("vertex_color");
+    if (shown.attributes.contains("vertex_color")) note_negative(loader, node, "vertex_color", mesh.colors);
     for (const Attribute& a : mesh.attributes) {
       there.insert(a.name);
       if (shown.attributes.contains(a.name) && !std::all_of(a.values.begin(), a.values.end(), is_finite))
         fail(loader, node, fmt::format("the mesh attribute \"{}\" has values that are not finite", a.name));
+      if (shown.attributes.contains(a.name)) note_negative(loader, node, a.name, a.values);
     }
     note_limits(loader, node, shown, mesh);
   }

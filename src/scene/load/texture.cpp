@@ -88,6 +88,7 @@ Texture mesh_attribute(Params& p) {
   if (!t.attribute.starts_with("vertex_") && !t.attribute.starts_with("face_"))
     fail(p.loader, p.node, "needs a <string name=\"name\" .../> that begins with vertex_ or face_: vertex_color");
   const double scale = number(p, "scale", 1);
+  if (scale < 0) fail(p.loader, p.node, "scale should not be negative");
   if (scale != 1) {
     Slot inner;
     inner.texture = add_texture(p.loader, p.node, std::move(t));

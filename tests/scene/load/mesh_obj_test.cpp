@@ -105,6 +105,29 @@ TEST(MeshObj, concave_quads_are_cut_inside) {
   }
 }
 
+// Two notches: an E of twelve corners, whose fans from most corners lie outside of it.
+TEST(MeshObj, concave_polygons_are_cut_inside) {
+  const char* const corners[] = {"0 0", "3 0", "3 1", "1 1", "1 2", "3 2", "3 3", "1 3", "1 4", "3 4", "3 5", "0 5"};
+  std::string text;
+  for (const char* at : corners) text += fmt::format("v {} 0\n", at);
+  for (size_t first = 0; first < 12; ++first) {
+    std::string face = "f";
+    for (size_t i = 0; i < 12; ++i) face += fmt::format(" {}", (first + i) % 12 + 1);
+    const Mesh m = obj(text + face + "\n");
+    ASSERT_EQ(m.triangles.size(), 10u);
+    double area = 0;
+    for (size_t i = 0; i < 10; ++i) {
+      const glm::uvec3 t = m.triangles[i];
+      const Vec3 cross = glm::cross(m.positions[t.y] - m.positions[t.x], m.positions[t.z] - m.positions[t.x]);
+      EXPECT_GE(cross.z, 0) << first;
+      area += 0.5 * double(glm::length(cross));
+      const Vec3 middle = (m.positions[t.x] + m.positions[t.y] + m.positions[t.z]) / 3.0f;
+      EXPECT_FALSE(middle.x > 1 && ((middle.y > 1 && middle.y < 2) || (middle.y > 3 && middle.y < 4))) << first;
+    }
+    EXPECT_DOUBLE_EQ(area, 11) << first;
+  }
+}
+
 TEST(MeshObj, faces_without_area) {
   EXPECT_EQ(obj(three_vertices + "f 1 2\nf 1\nf\n").triangles.size(), 0u);
   const Mesh m = obj(three_vertices + "f 1 1 2\nf 1 2 2 1\n", MeshOptions());  // stay, with normals that are unit

@@ -239,6 +239,12 @@ TEST(TextureKinds, AttributesOfFacesAndVertices) {
   EXPECT_RGB(eval(s, s.materials[0].reflectance, surface), 0, 0.5, 0.1, 1e-6);
   s = load_inside(with_attribute("ply", "vertex_heat"));
   EXPECT_RGB(eval(s, s.materials[0].reflectance, surface), 0.25, 0.25, 0.25, 1e-6);
+  for (Attribute& a : s.meshes[0].attributes)
+    for (Rgb& c : a.values) c = -c;
+  EXPECT_RGB(eval(s, s.materials[0].reflectance, surface), 0, 0, 0, 0);
+  EXPECT_SAYS(error_of("<bsdf type='diffuse'><texture name='reflectance' type='mesh_attribute'>"
+                       "<string name='name' value='vertex_color'/><float name='scale' value='-1'/></texture></bsdf>"),
+              "scale should not be negative");
   // what is not there
   EXPECT_SAYS(error_of(with_attribute("ply", "vertex_color")),
               "test.xml:2: <shape type=\"ply\">: its textures show the mesh attribute \"vertex_color\", which it "
