@@ -218,11 +218,12 @@ TEST_F(PictureFile, DamagedFilesAreErrors) {
     EXPECT_NE(error.find("b.exr: "), std::string::npos) << size << ": " << error;
     EXPECT_EQ(error.find('\n'), std::string::npos);
   }
-  std::vector<uint8_t> grey(64 * 64, 100);
+  std::vector<uint8_t> colours(3 * 64 * 64);
+  for (size_t i = 0; i < colours.size(); ++i) colours[i] = uint8_t(i * 37 % 251);
   for (const char* name : {"d.tif", "d.jpg"}) {  // their readers give pixels, and leave an error
     auto output = OIIO::ImageOutput::create(file(name));
-    ASSERT_TRUE(output->open(file(name), OIIO::ImageSpec(64, 64, 1, OIIO::TypeDesc::UINT8)) &&
-                output->write_image(OIIO::TypeDesc::UINT8, grey.data()) && output->close());
+    ASSERT_TRUE(output->open(file(name), OIIO::ImageSpec(64, 64, 3, OIIO::TypeDesc::UINT8)) &&
+                output->write_image(OIIO::TypeDesc::UINT8, colours.data()) && output->close());
     const std::string all = read_bytes(file(name));
     EXPECT_EQ(error_of([&] { read_picture(file(name)); }), "");
     write_bytes(file(name), all.substr(0, all.size() * 6 / 10));
