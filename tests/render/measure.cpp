@@ -2,18 +2,20 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
+#include <algorithm>
 #include <numeric>
 
 namespace ajar {
 namespace {
 
 // Sanitizers are asked what they report, and take ten times as long: verdicts are left to builds without them.
+int batches_of(const Repeats& plan) {
 #ifdef AJAR_SANITIZED
-constexpr int most_batches = 2;
+  return std::min(plan.batches, 2);
 #else
-constexpr int most_batches = std::numeric_limits<int>::max();
+  return plan.batches;
 #endif
+}
 
 }  // namespace
 
@@ -38,7 +40,7 @@ kit::Estimate measure(const Scene& scene, const RenderOptions& options, const Re
   RenderOptions o = options;
   o.spp = plan.passes;
   std::vector<std::vector<double>> runs;
-  for (int i = 0; i < std::min(plan.batches, most_batches); ++i) {
+  for (int i = 0; i < batches_of(plan); ++i) {
     o.seed = plan.seed + uint64_t(i);
     const Picture p = develop(rendered(scene, accel, o).film);
     runs.emplace_back(p.pixels.begin(), p.pixels.end());
@@ -53,7 +55,7 @@ std::map<std::pair<int, int>, kit::Estimate> measure_techniques(const Scene& sce
   o.techniques = true;
   const size_t pixels = size_t(scene.camera.crop_width) * size_t(scene.camera.crop_height);
   std::map<std::pair<int, int>, std::vector<std::vector<double>>> runs;
-  const int batches = std::min(plan.batches, most_batches);
+  const int batches = batches_of(plan);
   for (int i = 0; i < batches; ++i) {
     o.seed = plan.seed + uint64_t(i);
     const RenderState state = rendered(scene, accel, o);

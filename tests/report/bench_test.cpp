@@ -402,5 +402,15 @@ TEST_F(Bench, TechniquesOnRequest) {
   for (const double share : shares) EXPECT_EQ(share, 1) << "all runs are there";
 }
 
+// Whatever they are called.
+TEST_F(Bench, MethodsKeepTheirTechniques) {
+  Json json = small();
+  json["techniques"] = true;
+  json["methods"] = {{{"name", "b.tmp"}, {"integrator", "bdpt"}}, {{"name", "b"}, {"integrator", "bdpt"}}};
+  const Json results = run(json);
+  for (const Json& method : results["scenes"][0]["methods"])
+    EXPECT_GT(method["techniques"].size(), 3u) << method["name"];
+}
+
 }  // namespace
 }  // namespace ajar

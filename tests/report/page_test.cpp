@@ -111,6 +111,15 @@ TEST_F(Page, HoldsTheResultsAndAnIndexOfImages) {
     EXPECT_GT(between(html, "id=\"" + file["id"].get<std::string>() + "\">", "</script>").size(), 40u);
 }
 
+TEST_F(Page, CurvesAreOfTheseResults) {
+  page();
+  EXPECT_TRUE(std::filesystem::exists(folder / "curves.svg"));
+  for (json& scene : results["scenes"])
+    for (json& method : scene["methods"]) method["runs"] = json::array();
+  page();
+  EXPECT_FALSE(std::filesystem::exists(folder / "curves.svg")) << "of results that had some";
+}
+
 TEST_F(Page, NamesCannotBreakOut) {
   const std::string html = page();
   EXPECT_NE(html.find("<title>Doors &lt;/title>&lt;b>&amp; \"more\"</title>"), std::string::npos);

@@ -41,8 +41,9 @@ struct MeshOptions {
 // All readers: a file without normals gets smooth ones (angle-weighted means over the faces at a vertex, Thürmer and
 // Wüthrich 1998) unless face_normals is asked for. Normals are made unit; one that is missing, zero or not a number is
 // computed from the faces like those of a file without normals, and where these have no area it is (0, 0, 1). Polygons
-// become fans from their first corner, concave ones of up to 256 corners what lies inside of them. Triangles without area stay. Throws Error that names the file and line, vertex or face: file
-// unreadable, malformed or truncated, index out of range, position, uv or colour not finite.
+// become fans from their first corner; concave ones, of up to 256 corners, triangles that lie inside. Triangles without
+// area stay. Throws Error that names the file and line, vertex or face: file unreadable, malformed or truncated, index
+// out of range, position, uv or colour not finite.
 
 /// Wavefront OBJ, the whole file as one mesh: objects, groups (but see above), lines and curves are passed over.
 /// Vertices with the same v, vt and vn index are shared. Faces of fewer than three corners have no area and are left

@@ -145,6 +145,14 @@ INSTANTIATE_TEST_SUITE_P(Bsdf, Facet,
                                               100 * i.param.alpha_u, 100 * i.param.alpha_v);
                          });
 
+TEST(Facets, TheNarrowestLobeIsThatOfTheNarrowerAxis) {
+  Bsdf bsdf;
+  bsdf.count = 1;
+  bsdf.lobes[0].kind = LobeKind::principled;
+  bsdf.lobes[0].principled = {.roughness = 0.5f, .aspect = 0.4f};
+  EXPECT_FLOAT_EQ(least_roughness(bsdf), 0.25f * 0.4f);
+}
+
 TEST(Facets, FiniteAtTheSmallestRoughness) {
   for (const Microfacet kind : {Microfacet::beckmann, Microfacet::ggx}) {
     const Facets f{min_alpha, min_alpha, kind};

@@ -208,6 +208,17 @@ TEST(Limits, MeshAttributesShowAtMostOne) {
   EXPECT_FALSE(says(s.notes, "above 1"));
 }
 
+TEST(Limits, MeshAttributesOfLampsAreNotNegative) {
+  const Scene s = load_inside(
+      "<shape type='ply'><string name='filename' value='debts.ply'/><emitter type='area'>"
+      "<texture name='radiance' type='vertexcolors'/></emitter></shape>");
+  Surface surface;
+  surface.shape = 0;
+  EXPECT_RGB(eval(s, s.lights[0].radiance, surface), 0, 2, 3, 1e-6);
+  EXPECT_RGB(mean(s, s.lights[0].radiance), 0, 2, 3, 1e-6);
+  EXPECT_TRUE(says(s.notes, "the mesh attribute \"vertex_color\" has negative numbers: they show as 0"));
+}
+
 TEST(TextureKinds, MeshAttribute) {
   for (const char* type : {"mesh_attribute'><string name='name' value='vertex_color'/></texture>", "vertexcolors'/>"}) {
     const Scene s =
