@@ -11,6 +11,7 @@
 
 #include "ajar/core/bytes.h"
 #include "ajar/core/error.h"
+#include "ajar/core/files.h"
 #include "animate_files.h"
 #include "animate_options.h"
 #include "commands.h"
@@ -94,15 +95,14 @@ std::string frame_key(const Work& w, int frame, const Scene& scene) {
 // Whether the frame is there as it should be; a PNG that is missing is made again.
 bool is_done(Work& w, int frame) {
   const std::string path = frame_name(w.pattern, frame);
-  std::error_code unreadable;
-  if (!fs::exists(path, unreadable)) return false;
+  if (!is_there(path)) return false;
   const Picture image = read_frame(path);
   const Metadata metadata = read_metadata(path);
   const auto found = metadata.find("ajar:frame");
   const std::string here = frame_key(w, frame, *load_frame(w.shooting, frame));
   const auto* there = found == metadata.end() ? nullptr : std::get_if<std::string>(&found->second);
   if (there && *there == here) {
-    if (const std::string png = frame_name(w.png, frame); !fs::exists(png)) write_png(png, image);
+    if (const std::string png = frame_name(w.png, frame); !is_there(png)) write_png(png, image);
     return true;
   }
   const std::string why = there && there->starts_with(w.options_key + ",")
@@ -152,6 +152,7 @@ Run frame_run(const Work& w, int frame, const Stage& stage) {
   run.scene_path = w.arguments.scene, run.out_path = frame_name(w.pattern, frame);
   for (const auto& [name, value] : parameters_at(w.shooting.timeline, frame)) run.defines.push_back(name + "=" + value);
   run.at = time_at(w.shooting.timeline, frame);
+  run.lenient = w.arguments.lenient;
   run.options = frame_options(w, frame, *stage.scene);
   run.options.seed = image_seed(w.sequence, w.options.seed, uint32_t(frame));
   run.light_choice = usual_light_choice(run.options.integrator);
@@ -244,6 +245,17 @@ void render_frames(Work& w) {
   }
 }
 
+std::string figures_stem(const Work& w) { return w.folder + "/animation"; }
+
+// What would stand in the way of the files to come.
+void check_outputs(const Work& w) {
+  const std::string frame = frame_name(w.pattern, w.to_do.front());
+  for (const char* extension : {".exr", ".png", ".json"})
+    check_file(fs::path(frame).replace_extension(extension).string());
+  for (const char* extension : {".json", ".csv", ".svg"}) check_file(figures_stem(w) + extension);
+  if (w.carries) check_file(carried_name(w));
+}
+
 void write_film(const Work& w) {
   const AnimateArguments& a = w.arguments;
   if (a.video.empty()) return;
@@ -255,7 +267,7 @@ void write_figures(const Work& w) {
   std::optional<FramePattern> reference;
   if (!w.arguments.reference.empty()) reference = parse_pattern("--reference", w.arguments.reference);
   const std::vector<FrameFigures> figures = measure(w.pattern, w.shooting.timeline, reference, w.options_key);
-  const std::string stem = w.folder + "/animation";
+  const std::string stem = figures_stem(w);
   write_text(stem + ".json", sequence_json(figures));
   write_text(stem + ".csv", sequence_csv(figures));
   write_text(stem + ".svg", sequence_svg(figures, fmt::format("{}, {}", fs::path(w.arguments.scene).stem().string(),
@@ -263,18 +275,13 @@ void write_figures(const Work& w) {
   if (!w.arguments.quiet) say(stdout, "{}.json\n{}.csv\n{}.svg\n", stem, stem, stem);
 }
 
-// An error that only they have does not hide that there was an interruption.
+// An error that only they have does not hide why the animation ended.
 void write_figures_so_far(const Work& w) {
   try {
     write_figures(w);
-  } catch (const Error& error) {
+  } catch (const std::exception& error) {
     say(stderr, "ajar: warning: {}\n", error.what());
   }
-}
-
-void print_notes(const Timeline& timeline, const Scene& scene) {
-  for (const auto* notes : {&timeline.notes, &scene.notes})
-    for (const std::string& n : *notes) say(stderr, "ajar: note: {}\n", n);
 }
 
 Work prepare(const AnimateArguments& a) {
@@ -292,7 +299,7 @@ Work prepare(const AnimateArguments& a) {
   for (const auto& one : {zero, scene, last}) check_apart(a, r, *one, w.shooting.cache);
   if (!a.at.empty() && scene->hints.first_time > scene->hints.last_time)
     throw Error(fmt::format("--at {}: nothing in the scene has an <animation>; leave it out", a.at));
-  if (!a.quiet) print_notes(w.shooting.timeline, *scene);
+  if (!a.quiet) say_notes(w.shooting.timeline.notes), say_notes(scene->notes);
   w.options = render_options(a, *zero);
   w.width = zero->camera.crop_width, w.height = zero->camera.crop_height;
   frame_options(w, r.first, *scene), frame_options(w, r.last, *last);
@@ -310,6 +317,7 @@ Work prepare(const AnimateArguments& a) {
   make_folder(w.folder);
   for (int f = r.first; f <= r.last; ++f)
     if (!is_done(w, f)) w.to_do.push_back(f);
+  if (!w.to_do.empty()) check_outputs(w);
   return w;
 }
 
@@ -323,7 +331,7 @@ void run_animate(const AnimateArguments& a) {
   catch_stop();
   try {
     if (!w.to_do.empty()) render_frames(w);
-  } catch (const Interrupted&) {
+  } catch (...) {  // an interruption, or an error of a frame
     if (!a.quiet) clear_line();
     if (there + w.done > 0) write_figures_so_far(w);
     throw;

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "ajar/core/error.h"
+#include "ajar/core/files.h"
 #include "apart.h"
 #include "outputs.h"
 
@@ -48,7 +49,7 @@ void check_references(const AnimateArguments& a, Shooting& shooting) {
   const FramePattern reference = parse_pattern("--reference", a.reference);
   const FrameRange& r = shooting.timeline.frames;
   for (int f = r.first; f <= r.last; ++f)
-    if (const std::string name = frame_name(reference, f); !fs::exists(name))
+    if (const std::string name = frame_name(reference, f); !is_there(name))
       throw Error(fmt::format("--reference {}: there is no {}; make it, or take a part of the --frames, such as 0-9/48",
                               a.reference, name));
   std::shared_ptr<const Scene> scene;

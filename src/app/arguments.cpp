@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cstdio>
 #include <filesystem>
 
 #include "ajar/core/error.h"
@@ -18,9 +17,10 @@ std::string extension_of(const std::string& path) {
 }
 
 void set_size(Camera& camera, const std::string& text) {
-  int w = 0, h = 0, end = 0;
-  if (std::sscanf(text.c_str(), "%dx%d%n", &w, &h, &end) != 2 || size_t(end) != text.size() || w < 1 || h < 1 ||
-      w > 65536 || h > 65536)
+  int w = 0, h = 0;
+  const char* end = text.data() + text.size();
+  const char* by = std::from_chars(text.data(), end, w).ptr;
+  if (by == end || *by != 'x' || std::from_chars(by + 1, end, h).ptr != end || w < 1 || h < 1 || w > 65536 || h > 65536)
     throw Error(fmt::format("--size {}: write WIDTHxHEIGHT, each 1 to 65536", text));
   set_size(camera, w, h);
 }

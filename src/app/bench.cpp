@@ -16,6 +16,7 @@
 #include "ajar/render/render.h"
 #include "ajar/report/bench.h"
 #include "ajar/report/page.h"
+#include "apart.h"
 #include "arguments.h"
 #include "commands.h"
 #include "options.h"
@@ -54,10 +55,19 @@ struct Line {
   }
 };
 
+// As a shell takes it for one word.
+std::string quoted(const std::string& word) {
+  constexpr const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789/._-+:=,@%";
+  if (!word.empty() && word.find_first_not_of(plain) == word.npos) return word;
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? "'\\''" : std::string(1, c);
+  return out + "'";
+}
+
 std::string command_of(const BenchArguments& a) {
-  std::string command = fmt::format("ajar bench {} -o {}", a.suite, a.out);
+  std::string command = fmt::format("ajar bench {} -o {}", quoted(a.suite), quoted(a.out));
   if (a.quick) command += " --quick";
-  if (!a.references.empty()) command += " --references " + a.references;
+  if (!a.references.empty()) command += " --references " + quoted(a.references);
   if (a.threads > 0) command += fmt::format(" --threads {}", a.threads);
   return command;
 }
@@ -92,9 +102,19 @@ bool is_stress(const std::string& suite) {
       fmt::format("{}: needs bench_stress beside ajar; build it, with -DBUILD_TESTING=ON (docs/stress.md)", a.suite));
 }
 
+void check_apart(const BenchArguments& a, const Suite& suite) {
+  std::vector<Named> written, read = {{"the suite", a.suite}};
+  for (const char* name : {"suite.json", "results.json", "results.csv", "report.html", "curves.svg"})
+    written.push_back({"-o, file", (fs::path(a.out) / name).string()});
+  for (const BenchScene& scene : suite.scenes)
+    if (scene.missing.empty()) read.push_back({"the scene", scene.file});
+  require_apart(written, read);
+}
+
 void run_bench_command(const BenchArguments& a) {
   if (is_stress(a.suite)) run_stress(a);
   const Suite suite = load_suite(a.suite, a.quick);
+  check_apart(a, suite);
   for (const BenchScene& scene : suite.scenes)
     if (!scene.missing.empty() && !a.quiet)
       say(stderr, "ajar: note: scene {} is left out: {}\n", scene.name, scene.missing);

@@ -22,6 +22,8 @@ std::string reworded(const std::string& what) {
       {std::regex("(\\S+): \\d+ required [^]* missing"), "$1: has no value; write one after it"},
       {std::regex("(\\S+): At least (\\d+) required but received (\\d+)"),
        "$1: takes $2 values, not $3; write them all"},
+      {std::regex("(\\S+): At Most (\\d+) required but received (\\d+)"),
+       "$1: takes $2 values, not $3; leave the rest out"},
       {std::regex("The following arguments? (?:was|were) not expected: ([^]*)"),
        "$1: more words than are asked for; leave them out, or put an option before them"},
       {std::regex("(\\S+): ([^]*) not in \\{([^]*)\\}"), "$1 $2: is none of $3; write one of these"}};

@@ -10,6 +10,7 @@
 
 #include "ajar/core/error.h"
 #include "ajar/core/files.h"
+#include "apart.h"
 #include "arguments.h"
 #include "commands.h"
 #include "options.h"
@@ -25,6 +26,15 @@ struct FieldsArguments {
   bool lenient = false;
 };
 
+constexpr const char* pictures[] = {"cells.png", "irradiance.png", "importance.png", "strata-q.png", "strata-w.png"};
+
+void check_apart(const FieldsArguments& a, const Scene& scene) {
+  std::vector<Named> written, read = {{"the fields", a.file}};
+  for (const char* name : pictures) written.push_back({"-o, picture", (std::filesystem::path(a.out) / name).string()});
+  for (const std::string& file : scene.files) read.push_back({"a file of the scene,", file});
+  require_apart(written, read);
+}
+
 void write_pictures(const FieldsArguments& a, const Scene& scene, const Fields& fields) {
   const Accel accel(scene);
   const auto write = [&](const char* name, const Picture& picture, const std::string& legend) {
@@ -36,11 +46,11 @@ void write_pictures(const FieldsArguments& a, const Scene& scene, const Fields& 
     const FalseColour f = picture_totals(scene, accel, fields, side);
     write(name, f.picture, fmt::format("black {:.3g}, white {:.3g} {}, logarithmic", f.low, f.high, unit));
   };
-  write("cells.png", picture_cells(scene, accel, fields), "a colour for every cell");
-  write_totals("irradiance.png", Side::camera, "W/m^2");
-  write_totals("importance.png", Side::light, "pixels/m^2");
-  write("strata-q.png", picture_strata(scene, accel, fields, Side::camera), "where light comes from");
-  write("strata-w.png", picture_strata(scene, accel, fields, Side::light), "where importance comes from");
+  write(pictures[0], picture_cells(scene, accel, fields), "a colour for every cell");
+  write_totals(pictures[1], Side::camera, "W/m^2");
+  write_totals(pictures[2], Side::light, "pixels/m^2");
+  write(pictures[3], picture_strata(scene, accel, fields, Side::camera), "where light comes from");
+  write(pictures[4], picture_strata(scene, accel, fields, Side::light), "where importance comes from");
 }
 
 void show_fields(const FieldsArguments& a) {
@@ -54,6 +64,8 @@ void show_fields(const FieldsArguments& a) {
   }
   Scene scene = load_scene(a.scene, load_options(a.defines, a.lenient, a.at));
   check_time(a.at, scene);
+  check_apart(a, scene);
+  say_notes(scene.notes);
   if (!a.size.empty()) set_size(scene.camera, a.size);
   const StoredFields stored = load_fields(a.file, scene_key(scene));
   say(stdout, "{}", describe(stored));

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ajar/core/error.h"
+#include "ajar/core/files.h"
 #include "ajar/report/metrics.h"
 #include "arguments.h"
 
@@ -106,8 +107,8 @@ std::string describe(const Timeline& timeline, int frame) {
 
 namespace {
 
-// The loader knows parameters by -D alone.
-Scene load(const Shooting& s, const LoadOptions& options) {
+// The loader knows parameters by -D alone, and of no frames.
+Scene load(const Shooting& s, const LoadOptions& options, int frame) {
   try {
     return load_scene(s.scene_path, options);
   } catch (const Error& error) {
@@ -115,6 +116,8 @@ Scene load(const Shooting& s, const LoadOptions& options) {
     for (const auto& [name, track] : s.timeline.tracks)
       if (const std::string typed = fmt::format("-D {}:", name); !track.file.empty() && what.find(typed) != what.npos)
         what.replace(what.find(typed), typed.size(), fmt::format("{}: parameter \"{}\":", track.file, name));
+    if (const std::string there = describe(s.timeline, frame); !there.empty())
+      what += fmt::format(" (frame {}: {})", frame, there);
     throw Error(what);
   }
 }
@@ -127,7 +130,7 @@ std::shared_ptr<const Scene> load_frame(Shooting& s, int frame) {
   options.lenient = s.lenient;
   options.time = time_at(s.timeline, frame);
   options.cache = &s.cache;
-  auto scene = std::make_shared<Scene>(load(s, options));
+  auto scene = std::make_shared<Scene>(load(s, options, frame));
   if (!s.timeline.has_time && scene->hints.first_time < scene->hints.last_time) {
     // The user said nothing: the whole of what the file tells.
     s.timeline.has_time = true;
@@ -181,11 +184,11 @@ std::vector<FrameFigures> measure(const FramePattern& pattern, const Timeline& t
   for (int f = 0; f < timeline.frames.count; ++f) {
     const std::string path = frame_name(pattern, f);
     const Picture last = std::exchange(before, {}), last_truth = std::exchange(reference_before, {});
-    if (!fs::exists(path) || !is_of(path, key)) continue;
+    if (!is_there(path) || !is_of(path, key)) continue;
     Picture image = read_frame(path);
     out.push_back(measure_frame(path, image, timeline, f));
     const std::string name = reference ? frame_name(*reference, f) : "";
-    if (!reference || !fs::exists(name)) continue;
+    if (!reference || !is_there(name)) continue;
     Picture truth = read_rgb(name);
     if (truth.width != image.width || truth.height != image.height)
       throw Error(fmt::format("--reference {}: is {}x{}, the frame {}x{}; use --size", name, truth.width, truth.height,

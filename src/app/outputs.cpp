@@ -6,20 +6,24 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <new>
 #include <nlohmann/json.hpp>
 
 #include "ajar/core/error.h"
+#include "ajar/film/pyramid.h"
 #include "ajar/report/account.h"
 #include "ajar/report/metrics.h"
 #include "apart.h"
 #include "progress.h"
 #include "say.h"
+#include "stop.h"
 
 namespace ajar {
 namespace {
 
 Picture append(Picture a, const Picture& b) {
   Picture out{a.width, a.height, a.names, {}};
+  out.pixels.reserve(a.pixels.size() + b.pixels.size());
   out.names.insert(out.names.end(), b.names.begin(), b.names.end());
   const size_t na = a.names.size(), nb = b.names.size();
   for (size_t i = 0; i < size_t(a.width) * size_t(a.height); ++i) {
@@ -94,6 +98,31 @@ bool goes_on(const Named& output, const Named& input) {
          (output.option == "--save-fields" && input.option == "--load-fields");
 }
 
+// Images of strategies take the place of all that lie in their folder, by their names.
+void check_layers(const RenderArguments& a, const std::vector<Named>& files) {
+  if (a.techniques.empty()) return;
+  for (const Named& file : files) {
+    const std::filesystem::path path = file.path;
+    const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+    if (is_layer(path.filename().string()) && is_same_file(folder.string(), a.techniques))
+      throw Error(
+          fmt::format("--techniques {}: would take away {} {}, whose name is that of a strategy's image; name "
+                      "another folder",
+                      a.techniques, file.option, file.path));
+  }
+}
+
+// AOVs are left out where memory is too short for them: the image is not lost.
+Picture image_of(const RenderArguments& a, const Scene& scene, const Accel& accel, const RenderState& state) {
+  if (a.features.empty()) return develop(state.film);
+  try {
+    return with_features(a, scene, accel, state);
+  } catch (const std::bad_alloc&) {
+    say(stderr, "ajar: warning: out of memory for --aov; {} is written without\n", a.out);
+    return develop(state.film);
+  }
+}
+
 }  // namespace
 
 void Log::write(const RenderState& state, bool last) {
@@ -150,6 +179,7 @@ void check_outputs(const RenderArguments& a) {
     for (const Named& input : read(a))
       if (!goes_on(outputs[i], input)) require_apart(outputs[i], input);
   }
+  check_layers(a, outputs), check_layers(a, read(a));
   for (const Named& output : outputs) check_file(output.path);
   if (!a.techniques.empty()) check_folder(a.techniques);
 }
@@ -161,7 +191,7 @@ void write_record(const RenderArguments& a, const Run& run, const RenderState& s
 void write_image(const RenderArguments& a, const Scene& scene, const Accel& accel, Run& run, const RenderState& state) {
   const double wall = wall_seconds(), cpu = process_cpu_seconds();
   const bool png_beside = a.png && !is_png(a.out);
-  if (!is_png(a.out)) write_exr(a.out, with_features(a, scene, accel, state), metadata(run, state), a.half);
+  if (!is_png(a.out)) write_exr(a.out, image_of(a, scene, accel, state), metadata(run, state), a.half);
   if (is_png(a.out)) write_png(a.out, develop(state.film));
   if (png_beside) write_png(with_extension(a.out, ".png"), develop(state.film));
   run.write_seconds = wall_seconds() - wall;
@@ -186,12 +216,20 @@ void Saver::save(const RenderState& state) {
 void write_each(const std::vector<std::function<void()>>& writes) {
   std::optional<Error> failed;
   for (const std::function<void()>& write : writes) {
+    std::string fault;
     try {
       write();
-    } catch (const std::exception& error) {
+      continue;
+    } catch (const Interrupted&) {
       if (failed) say(stderr, "ajar: {}\n", failed->what());
-      failed = Error(error.what());
+      throw;
+    } catch (const std::bad_alloc&) {
+      fault = "out of memory; not all is written";
+    } catch (const std::exception& error) {
+      fault = error.what();
     }
+    if (failed) say(stderr, "ajar: {}\n", failed->what());
+    failed = Error(fault);
   }
   if (failed) throw *failed;
 }

@@ -30,6 +30,7 @@ struct PlanArguments {
 void run_plan(const PlanArguments& a) {
   Scene scene = load_scene(a.scene, load_options(a.defines, a.lenient, a.at));
   check_time(a.at, scene);
+  say_notes(scene.notes);
   if (!a.size.empty()) set_size(scene.camera, a.size);
   const Accel accel(scene);
   RenderOptions options;

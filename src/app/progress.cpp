@@ -48,6 +48,8 @@ void clear_line() {
 std::string clock_text(double s) {
   if (s < 100) return fmt::format("{:.1f} s", s);
   if (s < 6000) return fmt::format("{}:{:02}", int(s) / 60, int(s) % 60);
+  constexpr double most = 3.6e6;
+  if (!(s < most)) return "over a thousand hours";
   return fmt::format("{}:{:02}:{:02}", int(s) / 3600, int(s) / 60 % 60, int(s) % 60);
 }
 

@@ -28,7 +28,7 @@ constexpr double training_share = 0.5;
 void hold_against(const RenderArguments& a, const Scene& scene, const Accel& accel, Run& run,
                   const RenderState& state) {
   if (a.versus == run.options.integrator) {
-    say(stderr, "ajar: note: {} was planned; there is nothing to hold it against\n", a.versus);
+    if (!a.quiet) say(stderr, "ajar: note: {} was planned; there is nothing to hold it against\n", a.versus);
     return;
   }
   const Versus versus =
@@ -160,7 +160,7 @@ void run_render(RenderArguments a) {
   const double wall0 = wall_seconds(), cpu0 = process_cpu_seconds();
   if (a.out.empty()) a.out = std::filesystem::path(a.scene).stem().string() + ".exr";
   check_outputs(a);
-  if (!a.resume.empty() && a.integrator.empty() && a.plan.empty())
+  if (!a.resume.empty() && a.integrator.empty() && (a.plan.empty() || a.plan == "all" || a.plan == "none"))
     a.integrator = integrator_of(read_checkpoint_key(a.resume));
   Scene scene = load_scene(a.scene, load_options(a.defines, a.lenient, a.at));
   check_apart(a, scene);
@@ -173,8 +173,7 @@ void run_render(RenderArguments a) {
   run.planned = plans(a, scene);
   run.options = render_options(a, scene, run.planned);
   std::optional<Picture> reference = read_reference(a, scene.camera);
-  for (const std::string& n : scene.notes)
-    if (!a.quiet) say(stderr, "ajar: note: {}\n", n);
+  if (!a.quiet) say_notes(scene.notes);
   run.threads = a.threads > 0 ? a.threads : int(std::thread::hardware_concurrency());
   run.triangles = count_triangles(scene);
   const double wall1 = wall_seconds(), cpu1 = process_cpu_seconds();

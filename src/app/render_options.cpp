@@ -233,7 +233,9 @@ bool plans(const RenderArguments& a, const Scene& scene) {
   return names_none(a, scene) && a.resume.empty() && a.load_fields.empty();
 }
 
-std::string usual_light_choice(const std::string& integrator) { return is_guided(integrator) ? "learned" : "tree"; }
+std::string usual_light_choice(const std::string& integrator) {
+  return is_guided(integrator) ? "learned" : integrator == "light" ? "power" : "tree";
+}
 
 std::string light_choice_of(const RenderArguments& a, const std::string& integrator) {
   return a.light_choice.empty() ? usual_light_choice(integrator) : a.light_choice;

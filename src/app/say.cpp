@@ -14,4 +14,8 @@ void guard_streams() {
     if (::fcntl(stream, F_GETFD) < 0) static_cast<void>(::open("/dev/null", O_RDWR));  // takes the lowest that is free
 }
 
+void say_notes(const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) say(stderr, "ajar: note: {}\n", note);
+}
+
 }  // namespace ajar

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <string>
+#include <vector>
 
 namespace ajar {
 
@@ -18,5 +20,8 @@ void say(std::FILE* to, fmt::format_string<T...> format, T&&... values) {
   const std::string text = fmt::format(format, std::forward<T>(values)...);
   std::fwrite(text.data(), 1, text.size(), to);
 }
+
+/// A line on standard error for each.
+void say_notes(const std::vector<std::string>& notes);
 
 }  // namespace ajar

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -141,6 +142,7 @@ std::string checkpoint_key(const Run& run, const Film& film) {
   for (const char* budget :
        {"spp", "seconds", "cpu_seconds", "noise", "threads", "leaves_out", "load_fields", "save_fields"})
     o.erase(budget);
+  std::sort(o["defines"].begin(), o["defines"].end());
   return fmt::format("{},{},files with checksum {:016x},{}", version,
                      std::filesystem::path(run.scene_path).filename().string(), run.content, in_text(o));
 }

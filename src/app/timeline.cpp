@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "ajar/core/error.h"
+#include "ajar/report/json.h"
 #include "arguments.h"
 
 namespace ajar {
@@ -89,12 +87,9 @@ std::optional<Track> parse_sweep(const std::string& written, std::string value, 
     return Error(fmt::format("{}: {}; write 5..60, or 5..60:smooth", written, why));
   };
   if (value.find("..") == value.npos) return {};
-  if (const size_t colon = value.rfind(':'); colon != value.npos) {
-    const std::string how = value.substr(colon + 1);
-    if (how != "smooth" && how != "linear") throw wrong(fmt::format("\"{}\" is neither linear nor smooth", how));
-    track.smooth = how == "smooth";
-    value.resize(colon);
-  }
+  const size_t colon = std::min(value.rfind(':'), value.size());
+  const std::string how = value.substr(colon);
+  value.resize(colon);
   bool any = false, all = true;
   for (size_t from = 0; from <= value.size();) {
     const size_t to = std::min(value.find("..", from), value.size());
@@ -104,6 +99,9 @@ std::optional<Track> parse_sweep(const std::string& written, std::string value, 
     from = to + 2;
   }
   if (!any) return {};
+  if (!how.empty() && how != ":smooth" && how != ":linear")
+    throw wrong(fmt::format("\"{}\" is neither linear nor smooth", how.substr(1)));
+  track.smooth = how == ":smooth";
   if (!all) throw wrong("sweeps go from number to number");
   for (size_t i = 0; i < track.keys.size(); ++i) {
     if (track.keys[i].values.size() != track.keys[0].values.size())
@@ -114,7 +112,7 @@ std::optional<Track> parse_sweep(const std::string& written, std::string value, 
   return track;
 }
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 Track::Key parse_key(const Json& key, const std::string& where) {
   const auto wrong = [&] {
@@ -161,18 +159,7 @@ struct Keyframes {
 };
 
 Keyframes read_keyframes(const std::string& path) {
-  std::ifstream in(path);
-  std::error_code none_such;
-  if (!in || std::filesystem::is_directory(path, none_such))
-    throw Error(path + ": cannot be read; is it a file, and there?");
-  Json json;
-  try {
-    json = Json::parse(in);
-  } catch (const Json::parse_error& error) {
-    throw Error(fmt::format("{}: not JSON at byte {}; look for a missing comma, quote or bracket", path, error.byte));
-  } catch (const Json::exception&) {
-    throw Error(path + ": holds a number that is too large; write one below 1e308");
-  }
+  const Json json = read_json(path);
   const std::string how = R"(write {"frames": 48, "parameters": {"door": [[0, 2], [47, 60]]}})";
   if (!json.is_object()) throw Error(fmt::format("{}: {}", path, how));
   Keyframes out;

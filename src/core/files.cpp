@@ -117,6 +117,11 @@ void write_aside(const std::string& path, const void* bytes, size_t size) {
 
 void write_text(const std::string& path, const std::string& text) { write_aside(path, text.data(), text.size()); }
 
+bool is_there(const std::string& path) {
+  std::error_code unknown;
+  return std::filesystem::exists(path, unknown);
+}
+
 void make_folder(const std::string& path) {
   std::error_code failure;
   std::filesystem::create_directories(path, failure);

@@ -35,10 +35,9 @@ void set_chances(const LightTree& tree, const Guide& guide, const Vec3& p, Chanc
   if (!is_cut(c)) return;
   for (uint32_t i = 0; i < c.cut->count; ++i) {
     const LightEntry& e = guide.fields->lights.entries[c.cut->first + i];
-    c.of[i] = e.weight * importance(tree, e.node, c.at);
+    c.of[i] = std::min(most_importance, e.weight * importance(tree, e.node, c.at));
     c.total += c.of[i];
   }
-  if (!(c.total < infinity)) c.total = 0;
 }
 
 // Whether a light is asked at all; u becomes uniform again.

@@ -20,12 +20,6 @@ void splat(const Film& film, const Strategy& c, Pyramid::Layer& layer) {
     }
 }
 
-// Whether write_pyramid gives such names.
-bool is_layer(const std::string& name) {
-  static const std::regex pattern("[sm][0-9]+t[0-9]+(-raw)?\\.exr");
-  return std::regex_match(name, pattern);
-}
-
 void clear_layers(const std::string& folder) {
   std::error_code ignored;
   std::vector<std::filesystem::path> old;
@@ -35,6 +29,11 @@ void clear_layers(const std::string& folder) {
 }
 
 }  // namespace
+
+bool is_layer(const std::string& name) {
+  static const std::regex pattern("[sm][0-9]+t[0-9]+(-raw)?\\.exr");
+  return std::regex_match(name, pattern);
+}
 
 void merge(Pyramid& pyramid, const Film& film, const std::vector<std::vector<Strategy>>& chunks) {
   for (const auto& chunk : chunks)

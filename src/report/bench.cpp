@@ -5,6 +5,7 @@
 #include <set>
 
 #include "ajar/core/error.h"
+#include "ajar/core/files.h"
 #include "ajar/report/fields.h"
 #include "element.h"
 #include "race.h"
@@ -41,7 +42,7 @@ struct Bench {
 std::optional<Json> find_run(const Bench& bench, const Stand& stand, const Method& method, uint64_t seed) {
   const fs::path path = bench.run_path(stand, method, seed);
   std::error_code unreadable;
-  if (!fs::exists(path, unreadable)) return {};
+  if (!is_there(path.string())) return {};
   Json file = read_json(path, "delete it, and the run is made again");
   if (!file.is_object() || !file.contains("run") || !file.contains("reference"))
     throw Error(fmt::format("{}: is no run of a bench; delete it", path.string()));
@@ -77,9 +78,8 @@ void write_runs(const Bench& bench, const Stand& stand, const std::vector<Racer>
     if (seed == bench.suite.seeds[0]) write_image(bench, stand, racer.method->name, develop(racer.state.film));
     const fs::path path = bench.run_path(stand, *racer.method, seed);
     make_folder(path.parent_path().string());
-    write_text(
-        path.string(),
-        Json{{"reference", stand.reference_hash}, {"content", stand.content}, {"run", run_json(racer)}}.dump(1) + "\n");
+    const Json run = {{"reference", stand.reference_hash}, {"content", stand.content}, {"run", run_json(racer)}};
+    write_text(path.string(), text_of(run, 1) + "\n");
   }
 }
 
@@ -116,7 +116,8 @@ Json fields_json(const Bench& bench, const Stand& stand, const Method& method) {
   Json list = Json::array();
   for (const FieldPicture& p : field_pictures) {
     const fs::path image = fields_folder(stand, method.name) / p.file;
-    if (fs::exists(bench.options.folder / image)) list.push_back({{"title", p.title}, {"image", image.string()}});
+    if (is_there((bench.options.folder / image).string()))
+      list.push_back({{"title", p.title}, {"image", image.string()}});
   }
   return list;
 }
@@ -191,7 +192,7 @@ Json method_json(const Bench& bench, const Stand& stand, const Method& method) {
   const fs::path image = fs::path("images") / stand.scene->name / (method.name + ".exr");
   return {{"name", method.name},
           {"options", options_json(method.options)},
-          {"image", fs::exists(bench.options.folder / image) ? Json(image.string()) : Json(nullptr)},
+          {"image", is_there((bench.options.folder / image).string()) ? Json(image.string()) : Json(nullptr)},
           {"techniques", techniques_json(bench, stand, method)},
           {"fields", fields_json(bench, stand, method)},
           {"runs", runs}};
@@ -274,7 +275,7 @@ void claim_folder(const Bench& bench) {
     return;
   }
   make_folder(bench.options.folder.string());
-  write_text(path.string(), key.dump(1) + "\n");
+  write_text(path.string(), text_of(key, 1) + "\n");
 }
 
 void make_references(Bench& bench) {
@@ -313,7 +314,7 @@ Json run_bench(const Suite& suite, const BenchOptions& options) {
   for (Stand& stand : bench.stands)
     if (stand.reference && !bench.stopped) run_scene(bench, stand);
   const Json results = results_json(bench);
-  write_text((options.folder / "results.json").string(), results.dump(1) + "\n");
+  write_text((options.folder / "results.json").string(), text_of(results, 1) + "\n");
   write_text((options.folder / "results.csv").string(), results_csv(results));
   return results;
 }

@@ -1,13 +1,14 @@
-// Enters: a JSON file.
-// Leaves: its values, asked for by name, or an Error that names file, element and cure.
+// Enters: the values of a JSON file.
+// Leaves: the same, asked for by name, or an Error that names file, element and cure.
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "ajar/report/json.h"
 
 namespace ajar {
 
@@ -16,10 +17,6 @@ struct Element {
   const nlohmann::ordered_json* value = nullptr;
   std::string file, place;  ///< place: "scenes[1].size"; empty: the whole file
 };
-
-/// Throws Error with line, column and cure, also for a key that comes twice.
-nlohmann::ordered_json read_json(const std::filesystem::path& path,
-                                 const char* cure = "look for a missing comma, quote or bracket");
 
 [[noreturn]] void fail(const Element& element, const std::string& what);
 /// Fails unless it is an object with these keys only.

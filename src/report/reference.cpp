@@ -6,6 +6,7 @@
 
 #include "agreement.h"
 #include "ajar/core/error.h"
+#include "ajar/core/files.h"
 #include "ajar/report/metrics.h"
 #include "ajar/scene/load.h"
 #include "element.h"
@@ -71,7 +72,7 @@ struct Part {
 
 /// A batch that an earlier run left, if it is of this key.
 bool read_batch(const fs::path& path, const std::string& key, Part& part) {
-  if (!fs::exists(path)) return false;
+  if (!is_there(path.string())) return false;
   const Metadata data = read_metadata(path.string());
   const auto found = data.find("ajar:key");
   if (found == data.end() || found->second != Metadata::mapped_type(key)) return false;
@@ -117,14 +118,14 @@ bool collect(const BenchScene& scene, const LoadedScene& loaded, const BenchOpti
                         {"version", options.version}};
       const fs::path path = folder / fmt::format("{}-{}-{:03}.exr", i, render_options.integrator, k);
       ++done;
-      if (read_batch(path, key.dump(), parts[i])) continue;
+      if (read_batch(path, text_of(key, -1), parts[i])) continue;
       const auto go_on = [&](const RenderState&) {
         const double left = made > 0 ? (wall_seconds() - start) / made * (all - done + 1) : infinity;
         return !options.watch || options.watch({fmt::format("reference {} by {}, batch {} of {}", scene.name,
                                                             render_options.integrator, k + 1, cuts[i].count),
                                                 double(done - 1) / all, left});
       };
-      if (!render_batch(loaded, render_options, path, key.dump(), go_on, parts[i])) return false;
+      if (!render_batch(loaded, render_options, path, text_of(key, -1), go_on, parts[i])) return false;
       ++made;
     }
   return true;
@@ -235,7 +236,7 @@ std::optional<Reference> find_reference(const Suite& suite, const BenchScene& sc
     return Reference{read_reference(scene.reference, camera), {}, {{"image", scene.reference.filename().string()}}};
   const fs::path stem = reference_stem(scene, camera.crop_width, camera.crop_height, options.references);
   const fs::path image = stem.string() + ".exr", json = stem.string() + ".json";
-  if (!fs::exists(image) || !fs::exists(json)) return {};
+  if (!is_there(image.string()) || !is_there(json.string())) return {};
   Json made = read_json(json, "delete it, and the reference is made again");
   if (!made.is_object() || made.value("request", Json()) != request_json(scene, loaded))
     throw Error(
@@ -262,7 +263,7 @@ std::optional<Reference> make_reference(const Suite& suite, const BenchScene& sc
   require_light(combined.image, stem.string() + ".exr");
   const Json json = record(scene, *loaded.scene, options, parts, agreement, combined);
   write_exr(stem.string() + ".exr", combined.image, {{"ajar:version", options.version}}, true);
-  write_text(stem.string() + ".json", json.dump(2) + "\n");
+  write_text(stem.string() + ".json", text_of(json, 2) + "\n");
   std::error_code ignored;
   fs::remove_all(folder, ignored);
   return find_reference(suite, scene, *loaded.scene, options);  // as everyone will read it, in half precision

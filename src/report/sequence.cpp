@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "ajar/report/json.h"
 #include "markup.h"
 #include "planes.h"
 
@@ -26,8 +27,13 @@ double mean_over(const std::vector<FrameFigures>& frames, const Figure& figure) 
 nlohmann::ordered_json known(double x) { return std::isnan(x) ? nlohmann::ordered_json() : nlohmann::ordered_json(x); }
 std::string cell(double x) { return std::isnan(x) ? "" : fmt::format("{}", x); }
 
-// Quoted where a list of numbers would fall apart.
-std::string cell(const std::string& text) { return text.find(',') == text.npos ? text : '"' + text + '"'; }
+// Quoted where it would fall apart (RFC 4180).
+std::string cell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == text.npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
+  return out + '"';
+}
 
 // A figure over frames, logarithmic; one part of the plot.
 struct FramePlot {
@@ -113,7 +119,7 @@ std::string sequence_json(const std::vector<FrameFigures>& frames) {
                            {"relmse", known(f.relmse)},
                            {"relmse_trimmed", known(f.relmse_trimmed)},
                            {"flicker", known(f.flicker)}});
-  return j.dump(2) + "\n";
+  return text_of(j, 2) + "\n";
 }
 
 std::string sequence_csv(const std::vector<FrameFigures>& frames) {
@@ -121,7 +127,7 @@ std::string sequence_csv(const std::vector<FrameFigures>& frames) {
   for (const FrameFigures& f : frames)
     for (const auto& [name, value] : f.parameters) names.insert(name);
   std::string out = "frame";
-  for (const std::string& name : names) out += "," + name;
+  for (const std::string& name : names) out += "," + cell(name);
   out += ",seconds,cpu_seconds,spp,mean,relmse,relmse_trimmed,flicker\n";
   for (const FrameFigures& f : frames) {
     out += fmt::format("{}", f.frame);
@@ -147,7 +153,8 @@ std::string sequence_svg(const std::vector<FrameFigures>& frames, const std::str
   const SequenceFigures mean = mean_of(frames);
   const auto panel = [&](const std::string& name, double of, const Figure& figure, double top) {
     p.top = top;
-    out += draw(p, frames, fmt::format("{} per frame, {:.3g} on average", name, of), figure);
+    const std::string average = std::isnan(of) ? "" : fmt::format(", {:.3g} on average", of);
+    out += draw(p, frames, fmt::format("{} per frame{}", name, average), figure);
   };
   if (std::isnan(mean.relmse)) {
     panel(

@@ -167,8 +167,7 @@ float weigh_sky(const LightTree& t, const Receiver& at, float out[most_sky]) {
 float left_share(const LightTree& tree, const LightNode& n, const Receiver& at) {
   const float x = importance(tree, n.left, at), y = importance(tree, n.left + 1, at);
   const float sum = x + y;
-  if (!(sum > 0)) return -1;
-  return sum < infinity ? x / sum : 0.5f * x / (0.5f * x + 0.5f * y);
+  return sum > 0 ? x / sum : -1;
 }
 
 // Tiles of one light below a node are chosen by power: they are alike to a receiver, and the walk would take longer
@@ -180,10 +179,8 @@ float share_below(const LightTree& tree, const LightNode& n, uint32_t place) {
   return float(power_of(tree, place, place + 1) / power_of(tree, n.first, n.last));
 }
 
-}  // namespace
-
-float importance(const LightTree& tree, uint32_t node, const Receiver& at) {
-  const LightNode& n = tree.nodes[node];
+// May overflow.
+float unbounded_importance(const LightTree& tree, const LightNode& n, const Receiver& at) {
   if (tree.choice == LightChoice::uniform || tree.choice == LightChoice::power) return n.weight;
   const bool faces = at.n != Vec3(0);
   if (n.infinite) {
@@ -210,6 +207,12 @@ float importance(const LightTree& tree, uint32_t node, const Receiver& at) {
   const float sent = cos_of_difference(sin_of(out), out, sin_seen, cos_seen);
   if (!(sent > n.cos_reach - 1e-4f)) return 0;
   return n.weight * received * std::max(sent, 1e-3f) / nearest;
+}
+
+}  // namespace
+
+float importance(const LightTree& tree, uint32_t node, const Receiver& at) {
+  return std::min(most_importance, unbounded_importance(tree, tree.nodes[node], at));
 }
 
 LightTree make_light_tree(const Scene& scene, LightChoice choice) {

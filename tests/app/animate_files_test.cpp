@@ -107,6 +107,31 @@ TEST_F(AnimateFiles, ImagesOfASceneAreNotWrittenOver) {
   EXPECT_EQ(kit::bytes_of(in("shot/f_1.png")), before);
 }
 
+TEST_F(AnimateFiles, WhatStandsInTheWayIsToldBeforeTheWork) {
+  for (const char* name : {"f_0.json", "animation.csv", "carried_0-1.fields"}) {
+    fs::create_directories(in("shot/" + std::string(name)));
+    EXPECT_SAYS(said({"--frames", "2", "--spp", "1", "--integrator", "guided-path", "-o", in("shot/f_%d.exr")}),
+                std::string(name) + ": cannot be written (Is a directory)");
+    EXPECT_FALSE(fs::exists(in("shot/f_0.exr")));
+    fs::remove(in("shot/" + std::string(name)));
+  }
+}
+
+// Key by key a parameter may be what the scene takes; between keys it need not be.
+TEST_F(AnimateFiles, AnErrorInTheMiddleLeavesFigures) {
+  put(R"(<default name="depth" value="9"/>
+    <integrator type="path"><integer name="max_depth" value="$depth"/></integrator>)");
+  write("keys.json", R"({"frames": 5, "parameters": {"depth": [[0, 2], [2, 2], [4, 3]]}})");
+  EXPECT_SAYS(said({"--spp", "1", "--keyframes", in("keys.json"), "-o", in("shot/f_%d.exr")}), " (frame 3: depth=2.5)");
+  EXPECT_EQ(record("shot/animation.json")["frames_done"], 3);
+}
+
+TEST_F(AnimateFiles, RecordsTellWhatWasLeftOut) {
+  put("<foo/>");
+  EXPECT_EQ(said({"--frames", "1", "--spp", "1", "--lenient", "-o", in("shot/f_%d.exr")}), "");
+  EXPECT_EQ(record("shot/f_0.json")["options"]["lenient"], true);
+}
+
 TEST_F(AnimateFiles, ReferencesMayBeOfAPart) {
   run("4", "reference", {"--integrator", "path", "--spp", "16"});
   fs::remove(in("reference/f_01.exr"));

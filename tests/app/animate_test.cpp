@@ -65,6 +65,11 @@ TEST(Timeline, ValuesWithDotsAreNotAllSweeps) {
   EXPECT_EQ(make_timeline("4", {"folder=../models"}, "", "").constant.at("folder"), "../models");
 }
 
+TEST(Timeline, ColonsOfPathsAreNoKindsOfSweep) {
+  EXPECT_EQ(make_timeline("4", {"x=../a:b/tex.png"}, "", "").constant.at("x"), "../a:b/tex.png");
+  EXPECT_SAYS(error_of([&] { make_timeline("4", {"x=1..2:b"}, "", ""); }), "\"b\" is neither linear nor smooth");
+}
+
 TEST(Timeline, WrongOnesAreErrors) {
   const auto frames = [](const std::string& text) { return error_of([&] { make_timeline(text, {}, "", ""); }); };
   EXPECT_SAYS(frames(""), "--frames is missing");
@@ -324,6 +329,7 @@ TEST_F(Animate, WholeNumbersAreWholeInEveryFrame) {
                       in("d/d_%d.exr")});
   };
   EXPECT_SAYS(error_of([&] { animate("5"); }), "2.5 should be a whole number");
+  EXPECT_SAYS(error_of([&] { animate("5"); }), " (frame 1: ");
   EXPECT_FALSE(fs::exists(in("d")));
   animate("3");
   EXPECT_TRUE(fs::exists(in("d/d_2.exr")));
@@ -345,6 +351,7 @@ TEST_F(Animate, SaysWhatIsWrong) {
   EXPECT_SAYS(wrong({"--at", "nan"}), "--at nan: write FROM..TO");
   EXPECT_SAYS(wrong({"--at", "0..1"}), "--at 0..1: nothing in the scene has an <animation>");
   EXPECT_SAYS(wrong({"--time", "soon"}), "--time soon");
+  EXPECT_SAYS(wrong({"--size", "4294967312x8"}), "--size 4294967312x8: write WIDTHxHEIGHT");
   const auto pattern = [&](const std::string& out) {
     return error_of([&] { run_command_line({"animate", in("room.xml"), "--frames", "2", "-o", out}); });
   };

@@ -77,7 +77,7 @@ TEST_F(BenchCommand, WritesResultsAndPrintsATable) {
   EXPECT_TRUE(table.ends_with(out + "/report.html\n")) << table;
   EXPECT_TRUE(fs::exists(out + "/report.html"));
   const auto json = results();
-  EXPECT_EQ(json["command"], "ajar bench " + suite + " -o " + out + " --threads 1");
+  EXPECT_EQ(json["command"], "ajar bench '" + suite + "' -o '" + out + "' --threads 1");
   EXPECT_EQ(json["machine"]["threads"], 1);
   EXPECT_EQ(json["quick"], false);
   EXPECT_EQ(json["seeds"].size(), 2u);
@@ -90,6 +90,22 @@ TEST_F(BenchCommand, QuickAndReferences) {
   EXPECT_EQ(results()["seeds"].size(), 1u);
   EXPECT_TRUE(fs::exists(folder / "elsewhere" / "s-8x8-depth2.exr"));
   EXPECT_THROW(run({suite, "-o", out}), Error) << "the folder holds the quick version's runs";
+}
+
+TEST_F(BenchCommand, CommandsAreForAShell) {
+  const std::string place = out + " it's\xe9";  // nor is it UTF-8
+  run({suite, "-o", place});
+  const auto json = nlohmann::json::parse(std::ifstream(place + "/results.json"));
+  EXPECT_EQ(json["command"], "ajar bench '" + suite + "' -o '" + out + " it'\\''s\xef\xbf\xbd'");
+  EXPECT_NO_THROW(run({suite, "-o", place})) << "the same runs";
+}
+
+TEST_F(BenchCommand, ASuiteIsNotWrittenOver) {
+  fs::create_directories(out);
+  fs::rename(suite, out + "/results.json");
+  const std::string before = kit::bytes_of(out + "/results.json");
+  EXPECT_THROW(run({out + "/results.json", "-o", out}), Error);
+  EXPECT_EQ(kit::bytes_of(out + "/results.json"), before);
 }
 
 TEST_F(BenchCommand, ErrorsComeBeforeAnythingIsWritten) {

@@ -247,17 +247,22 @@ TEST(Flicker, FiguresOfAllFrames) {
   std::vector<FrameFigures> frames(3);
   for (int i = 0; i < 3; ++i) frames[size_t(i)].frame = i, frames[size_t(i)].relmse = i + 1;
   frames[1].flicker = 0.5, frames[2].flicker = 1.5;
-  frames[2].parameters["sun"] = "1, 2";
+  frames[2].parameters["sun"] = "1, 2", frames[1].parameters["sun"] = "the \"low\" one";
   EXPECT_EQ(mean_of(frames).relmse, 2);
   EXPECT_EQ(mean_of(frames).flicker, 1);
   const std::string csv = sequence_csv(frames);
   EXPECT_EQ(csv,
             "frame,sun,seconds,cpu_seconds,spp,mean,relmse,relmse_trimmed,flicker\n"
-            "0,,0,0,0,0,1,,\n1,,0,0,0,0,2,,0.5\n2,\"1, 2\",0,0,0,0,3,,1.5\n");
+            "0,,0,0,0,0,1,,\n1,\"the \"\"low\"\" one\",0,0,0,0,2,,0.5\n2,\"1, 2\",0,0,0,0,3,,1.5\n");
   const auto j = nlohmann::json::parse(sequence_json(frames));
   EXPECT_TRUE(j["frames"][0]["flicker"].is_null());
   EXPECT_EQ(j["mean"]["flicker"], 1);
   EXPECT_NE(sequence_svg(frames, "a < b").find("a &lt; b"), std::string::npos);
+  EXPECT_NE(sequence_svg(frames, "a\xe9\x01 b").find("a\xef\xbf\xbd  b"), std::string::npos) << "XML has no such bytes";
+  frames[2].parameters["sun"] = "\xe9";
+  EXPECT_NE(sequence_json(frames).find("\xef\xbf\xbd"), std::string::npos);
+  frames.resize(1);
+  EXPECT_EQ(sequence_svg(frames, "a").find("nan"), std::string::npos);
 }
 
 }  // namespace

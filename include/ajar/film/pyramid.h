@@ -30,6 +30,8 @@ struct Pyramid {
 
 /// Adds the contributions of consecutive chunks in their order, but for those of more than most_vertices.
 void merge(Pyramid& pyramid, const Film& film, const std::vector<std::vector<Strategy>>& chunks);
+/// Whether write_pyramid gives a file such a name, and takes away one that has it.
+bool is_layer(const std::string& name);
 /// Writes DIR/s1t2.exr ... (weighted) and DIR/s1t2-raw.exr ..., m2t2.exr where merged, in place of all that are there.
 /// The weighted ones add up to the image of paths of so many vertices, but for what limits take from it and for virtual
 /// point lights, which have none (vpl, plain-vpl). Throws Error.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 namespace ajar {
@@ -13,7 +14,11 @@ enum class Heuristic : uint8_t { balance, power };  ///< power: exponent 2 (Veac
 inline double raise(Heuristic h, double ratio) { return h == Heuristic::power ? ratio * ratio : ratio; }
 /// Bounded, like the sums below: nothing overflows, and no infinity meets a zero.
 inline constexpr double largest_ratio = 1e150;
-inline double ratio(double other, double own) { return own > 0 ? std::min(largest_ratio, other / own) : 0; }
+inline double ratio(double other, double own) {
+  const double r = own > 0 ? other / own : 0;
+  if (r < largest_ratio) return r;
+  return std::isnan(r) ? 0 : largest_ratio;  // zero times infinity, where two vertices are one point
+}
 
 /// Prefix sum over the strategies that cut a subpath a_0 a_1 .. at or before vertex i (docs/method.md, R2):
 ///   S_i = v_i + r_(i-1) S_(i-1)

@@ -89,6 +89,8 @@ struct Receiver {
 /// Bound of what the receiver gets from the pieces below a node, up to a factor that all nodes share; by uniform and
 /// power choice the node's weight.
 float importance(const LightTree& tree, uint32_t node, const Receiver& at);
+/// The largest: a few hundred of them still have a sum.
+inline constexpr float most_importance = 1e36f;
 /// Draws a piece below the node in proportion to bounds of what the receiver gets from it; u becomes uniform again, pdf
 /// the probability. False where none can light the receiver.
 bool choose(const LightTree& tree, uint32_t node, const Receiver& at, float& u, uint32_t& place, float& pdf);

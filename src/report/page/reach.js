@@ -5,26 +5,33 @@ function time_row({name, seeds, base}, error, baseline) {
   const text = clocks[shown.clock].text;
   const last = Math.max(...seeds.map(({points}) => points.at(-1).t));
   const {median, low, high} = spread(times);
-  const time = median === Infinity ? `not within ${text(last)}` : with_range(text(median), {low, high}, text);
+  const sign = seeds.some(({points}) => reached_at_once(points, error)) ? '≤ ' : '';
+  const time = median === Infinity ? `not within ${text(last)}` : with_range(sign + text(median), {low, high}, text);
   const some =
       there > 0 && there < seeds.length ? el('span', {class: 'range'}, ` (${there} of ${seeds.length} seeds)`) : null;
   return [[swatch(name), name], [time, some], base ? '1' : gain({seeds, last, median}, error, baseline)];
 }
 
-/** Baseline's time over this method's: paired by seed where both got there, a bound where one did. */
+/**
+ * Baseline's time over this method's: paired by seed where both got there, a bound where one did, or where one's time
+ * is itself a bound; nothing where both are.
+ */
 function gain({seeds, last, median}, error, baseline) {
   if (!baseline) return nothing;
   if (median === Infinity) return baseline.median === Infinity ? nothing : `< ${ratio(baseline.median / last)}`;
   if (baseline.median === Infinity) return `> ${ratio(baseline.last / median)}`;
+  const at_once = ({seeds: of}) => of.some(({points}) => reached_at_once(points, error));
+  const soon = at_once({seeds}), sign = soon ? '> ' : at_once(baseline) ? '< ' : '';
+  if (soon && at_once(baseline)) return nothing;
   const pairs = seeds
                     .map(({seed, points}) => {
                       const other = baseline.seeds.find(s => s.seed === seed);
                       return other ? time_to(other.points, error) / time_to(points, error) : NaN;
                     })
                     .filter(x => Number.isFinite(x) && x > 0);
-  if (pairs.length === 0) return ratio(baseline.median / median);
+  if (pairs.length === 0) return sign + ratio(baseline.median / median);
   const s = spread(pairs);
-  return with_range(ratio(s.median), s, x => number(x, 2));
+  return with_range(sign + ratio(s.median), s, x => number(x, 2));
 }
 
 function time_table(scene, error) {

@@ -59,6 +59,9 @@ function error_at(points, t) {
   return a.e * (b.e / a.e) ** share;
 }
 
+/** Whether no point has a larger error: the time that time_to gives is one by which it was reached. */
+const reached_at_once = (points, error) => points.every(point => point.e <= error);
+
 /** The time from which on the error is no larger, between points as above; Infinity if it ends larger. */
 function time_to(points, error) {
   if (points.at(-1).e > error) return Infinity;

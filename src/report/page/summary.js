@@ -150,6 +150,13 @@ function totals() {
       .filter(({scenes: n}) => n > 0);
 }
 
+/** A geometric mean; of how many scenes, where not of all n. */
+function mean_of(ratios, n) {
+  if (!ratios) return nothing;
+  const part = ratios.count < n ? el('span', {class: 'range'}, ` of ${ratios.count}`) : null;
+  return [el('b', {}, ratio(ratios.mean)), part];
+}
+
 function total_rows(reach) {
   return totals().map(({name, scenes: n, error, time, slope, wins, ties, losses}, i, all) => ({
                         attributes: {class: i === 0 ? 'first' : ''},
@@ -159,24 +166,17 @@ function total_rows(reach) {
                                       [el('td', {class: 'scene', rowspan: all.length}, 'all scenes, geometric means')] :
                                       []),
                               ...[[swatch(name), name], `${n} scene${n === 1 ? '' : 's'}`,
-                                  error ? el('b', {}, ratio(error.mean)) : nothing,
+                                  mean_of(error, n),
                                   error ? forest({value: error.mean}, reach, colour_of(name)) : '',
-                                  time ?
-                                      [
-                                        el('b', {}, ratio(time.mean)),
-                                        time
-                                                    .count < n ?
-                                            el('span', {class: 'range'}, ` of ${time.count}`) :
-                                            null
-                                      ] :
-                                      nothing,
+                                  mean_of(time, n),
                                   slope_text(slope), `${wins} ▲  ${ties} ≈  ${losses} ▼`]
                                   .map(cell => el('td', {}, cell))
                             ],
                       }));
 }
 
-function headline({name, scenes: n, error, time, wins, ties, losses}) {
+function headline({name, error, time, wins, ties, losses}) {
+  const n = error?.count ?? 0;
   const better = error && error.mean >= 1;
   const figures = error ? ` ${ratio(better ? error.mean : 1 / error.mean)} ${better ? 'less' : 'more'} error than ${
                               results.baseline} ${equal_budget()}` :
@@ -184,10 +184,10 @@ function headline({name, scenes: n, error, time, wins, ties, losses}) {
   const times = time ? `, ${ratio(time.mean >= 1 ? time.mean : 1 / time.mean)} ${
                            time.mean >= 1 ? 'less' : 'more'} time to the same error` :
                        '';
+  const means = error ? ` (geometric means over ${n} scene${n === 1 ? '' : 's'})` : '';
   return el(
       'li', {}, swatch(name), el('b', {}, name),
-      `: ${figures}${times} (geometric means over ${n} scene${n === 1 ? '' : 's'}); ${wins} won, ${ties} tied, ${
-          losses} lost.`);
+      `: ${figures}${times}${means}; ${wins} won, ${ties} tied, ${losses} lost.`);
 }
 
 const equal_budget = () => results.budget?.spp ? 'at the same samples per pixel' : 'at equal time';
@@ -208,5 +208,6 @@ function write_summary(main) {
              `than four seeds the extremes]. Error ratio: the baseline's error over this method's ${equal_budget()}, ` +
              'paired by seed. Time ratio: the baseline\'s time over this method\'s to the same error, the larger of the ' +
              'two final ones. Both with their spread; above 1 is better. Slope: of log error against log time; −1 is ' +
-             'what an unbiased method without learning has. A tie: the spread of the error ratio covers 1.')));
+             'what an unbiased method without learning has. A tie: the spread of the error ratio covers 1, or a t-test of ' +
+             'the ratios does not tell them from 1, or there is one seed.')));
 }

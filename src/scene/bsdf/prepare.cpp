@@ -1,6 +1,10 @@
 #include <fmt/format.h>
 
+#include <map>
+#include <tuple>
+
 #include "ajar/core/error.h"
+#include "ajar/core/parallel.h"
 #include "ajar/scene/bsdf.h"
 #include "ajar/scene/bsdf/table.h"
 #include "ajar/scene/scene.h"
@@ -115,10 +119,18 @@ void fill_table(Material& m) {
   }
 }
 
-bool same_boundary(const Material& a, const Material& b) {
-  return a.ior == b.ior && a.distribution == b.distribution &&
-         (a.alpha_u.texture != none ? b.alpha_u.texture != none
-                                    : b.alpha_u.texture == none && a.alpha_u.value == b.alpha_u.value);
+// Rough plastics of one boundary share a table's numbers.
+void fill_tables(Scene& scene) {
+  std::map<std::tuple<float, Microfacet, float>, std::vector<Material*>> boundaries;
+  for (Material& m : scene.materials)
+    if (m.kind == MaterialKind::roughplastic)
+      boundaries[{m.ior, m.distribution, m.alpha_u.texture != none ? -1 : m.alpha_u.value.x}].push_back(&m);
+  std::vector<std::vector<Material*>> apart;
+  for (auto& [boundary, materials] : boundaries) apart.push_back(std::move(materials));
+  parallel_for(apart.size(), [&](size_t i) {
+    fill_table(*apart[i][0]);
+    for (Material* m : apart[i]) m->entering_table = apart[i][0]->entering_table;
+  });
 }
 
 }  // namespace
@@ -150,13 +162,8 @@ void prepare_materials(Scene& scene) {
     Material& m = scene.materials[i];
     m.splits = outline_of(scene, i, 0).splits;
     m.entering = float(1 - fresnel_diffuse(m.ior));
-    if (m.kind != MaterialKind::roughplastic) continue;
-    m.entering_table.clear();
-    for (uint32_t j = 0; j < i && m.entering_table.empty(); ++j)
-      if (scene.materials[j].kind == m.kind && same_boundary(scene.materials[j], m))
-        m.entering_table = scene.materials[j].entering_table;
-    if (m.entering_table.empty()) fill_table(m);
   }
+  fill_tables(scene);
 }
 
 }  // namespace ajar

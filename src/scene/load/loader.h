@@ -127,6 +127,9 @@ DMat4 to_world(Params& params, const char* name = "to_world");
 DMat4 regular_to_world(Params& p);
 /// Rotation (and mirror) of a transform, without its scale and position; lights at infinity have neither.
 Mat4 orientation(const DMat4& m);
+/// The unit vector across a unit vector z that Mitsuba takes where none is given, another one in 0.x than later: the
+/// first axis of its frames, and what is up for a camera.
+DVec3 across(const DVec3& z, bool old);
 /// Axes equal in length and at right angles, to a relative 1e-4.
 bool is_similarity(const DMat4& m);
 

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 
 #include "ajar/core/error.h"
 #include "smooth.h"
@@ -75,11 +74,17 @@ void transform(Mesh& mesh, const Mat4& to_world) {
   wind_by_normals(mesh);  // an uneven scale can move the sum of three normals to the other side
 }
 
-std::string read_bytes(const std::string& path) {
+std::ifstream open_bytes(const std::string& path) {
   std::error_code ignored;
   std::ifstream in(path, std::ios::binary);
   if (!in) throw Error(fmt::format("{}: cannot be read: {}", path, std::strerror(errno)));
   if (std::filesystem::is_directory(path, ignored)) throw Error(fmt::format("{}: is not a file", path));
+  return in;
+}
+
+std::string read_bytes(const std::string& path) {
+  std::error_code ignored;
+  std::ifstream in = open_bytes(path);
   std::string bytes;
   const auto size = std::filesystem::file_size(path, ignored);
   bytes.resize(ignored ? 0 : size);
@@ -177,7 +182,8 @@ void complete(Mesh& mesh, const MeshOptions& options, const std::string& name) {
   for (Vec3& n : mesh.normals)
     if (!try_normalize(n)) n = Vec3(0);
 
-  move(mesh, options.to_world);
+  const bool mirror = move(mesh, options.to_world);
+  if (mirror && options.keeps_side) turn_winding(mesh);
   for (const Vec3& p : mesh.positions)
     if (!finite(p))
       throw Error(fmt::format("{}: the to_world transform moves vertex {} beyond the range of numbers", name,

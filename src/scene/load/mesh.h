@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <fstream>
 #include <functional>
 #include <span>
 #include <string>
@@ -20,7 +21,9 @@ namespace ajar {
 //   inverse transpose, so a mirror keeps outside outside.
 // - A file without normals (or with face_normals): its winding in world space decides, as in Mitsuba. A mirror turns it
 //   inside out.
-// - Rectangle, cube and sphere keep their outside under a mirror, as Mitsuba's do: transform() winds anew.
+// - Rectangle and cube keep their outside under a mirror, as Mitsuba's do: transform() winds anew. So does the sphere
+// of
+//   0.x; the later one and all cylinders are turned inside out.
 
 /// What the shape element of a scene says about its mesh.
 struct MeshOptions {
@@ -35,7 +38,9 @@ struct MeshOptions {
   bool weld = false;   ///< corners without a normal share vertices by their position and uv, not by index
   bool apart = false;  ///< faces under different g or usemtl share no computed normals
   int group = -1;      ///< the faces of one of these groups alone, counted from 0
-  Mat4 to_world{1};    ///< applied before normals are made, which a mirror or uneven scale would change
+  /// Serialized, as Mitsuba 0.x has it: a mirror leaves the outside of a mesh without normals where it was.
+  bool keeps_side = false;
+  Mat4 to_world{1};  ///< applied before normals are made, which a mirror or uneven scale would change
 };
 
 // All readers: a file without normals gets smooth ones (angle-weighted means over the faces at a vertex, Thürmer and
@@ -75,7 +80,8 @@ void transform(Mesh& mesh, const Mat4& to_world);
 
 // What the readers share.
 
-/// The bytes of a file. Throws Error where it cannot be read.
+/// A file to read from, and the bytes of one. Throw Error where it cannot be read.
+std::ifstream open_bytes(const std::string& path);
 std::string read_bytes(const std::string& path);
 /// Appends a polygon's triangles; see above. The corners are vertices that exist.
 void add_polygon(Mesh& mesh, std::span<const uint32_t> corners);

@@ -17,10 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 constexpr size_t max_text = size_t(1) << 30;  // far beyond any real scene
 
-bool same_but_for_case(std::string_view a, std::string_view b) {
-  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; };
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](char x, char y) { return lower(x) == lower(y); });
-}
+bool same_but_for_case(const std::string& a, const std::string& b) { return lower(a) == lower(b); }
 
 // The file whose name differs in capitals alone, as it is spelt from the folder on; empty if there is none.
 fs::path other_case(const fs::path& folder, const fs::path& name) {
@@ -42,6 +39,12 @@ fs::path other_case(const fs::path& folder, const fs::path& name) {
 std::string pointer_problem(std::string_view head) {
   if (!head.starts_with("version https://git-lfs")) return {};
   return ": is a pointer of Git LFS, not the file itself; fetch it with \"git lfs pull\"";
+}
+
+std::string lower(std::string text) {
+  for (char& c : text)
+    if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
+  return text;
 }
 
 std::string snake_case(const std::string& name) {

@@ -12,7 +12,8 @@
 
 namespace ajar {
 
-/// An element. Tag, type and name are in snake_case; `written` and `named` keep type and name as the author spelt them.
+/// An element. Tag and name are in snake_case, type in small letters; `written` and `named` keep type and name as the
+/// author spelt them.
 struct Node {
   std::string tag, type, name, id, written, named;
   std::vector<std::pair<std::string, std::string>> attributes;  ///< the others, names in snake_case
@@ -36,6 +37,7 @@ Document read_document(const std::string& text, const std::string& folder, const
 
 /// toWorld, intIOR, alphaU -> to_world, int_ior, alpha_u; names in that spelling stay.
 std::string snake_case(const std::string& name);
+std::string lower(std::string text);
 /// Whole file as bytes. Throws Error with the reason.
 std::string read_text(const std::string& path);
 /// Adds the text of a file to Document::content.

@@ -16,12 +16,6 @@ std::string_view trimmed(std::string_view s) {
   return begin == s.npos ? std::string_view() : s.substr(begin, s.find_last_not_of(blanks) - begin + 1);
 }
 
-std::string lower(std::string s) {
-  for (char& c : s)
-    if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
-  return s;
-}
-
 // Elements that plugins may have inside.
 bool is_parameter(const Node& node) {
   static constexpr const char* tags[] = {"float", "integer", "string",    "boolean",   "rgb",      "srgb", "spectrum",
@@ -114,6 +108,11 @@ double number_attribute(const Loader& loader, const Node& node, const char* name
 
 DVec3 vector_of(const Loader& loader, const Node& node, double otherwise) {
   const std::string* value = attribute(node, "value");
+  const bool apart = attribute(node, "x") || attribute(node, "y") || attribute(node, "z");
+  if (value && apart) fail(loader, node, "has both value and x, y, z; leave one of them out");
+  const bool mistyped = !node.attributes.empty() && node.tag != "rotate";
+  if (!value && !apart && (mistyped || node.tag == "scale"))
+    fail(loader, node, "has neither value nor x, y, z; write one");
   if (value == nullptr)
     return {number_attribute(loader, node, "x", otherwise), number_attribute(loader, node, "y", otherwise),
             number_attribute(loader, node, "z", otherwise)};
@@ -231,8 +230,7 @@ std::vector<const Node*> nested(Params& params, std::string_view tag) {
 void note_unused(Params& params, std::initializer_list<const char*> harmless) {
   for (size_t i = 0; i < params.node.children.size(); ++i) {
     const Node& child = params.node.children[i];
-    if (!params.used[i] && std::find(harmless.begin(), harmless.end(), child.name) == harmless.end() &&
-        params.loader.said.insert("unused " + child.tag + " " + child.name).second)
+    if (!params.used[i] && std::find(harmless.begin(), harmless.end(), child.name) == harmless.end())
       note(params.loader, params.node,
            child.name.empty() ? fmt::format("a nested <{}> is not used", child.tag)
                               : fmt::format("the parameter \"{}\" is not used", child.named));

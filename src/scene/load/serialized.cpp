@@ -3,6 +3,9 @@
 
 #include <bit>
 #include <cstring>
+#include <fstream>
+#include <functional>
+#include <memory>
 
 #include "ajar/core/error.h"
 #include "mesh.h"
@@ -24,20 +27,48 @@ enum Flags : uint32_t {
   double_precision = 0x2000
 };
 
+// A file, of which no more is read than is asked for: it may hold thousands of meshes, each read on its own. Or bytes
+// in memory.
+struct Source {
+  size_t size = 0;
+  std::function<std::span<const std::byte>(size_t at, size_t count)> piece;  // within the size; until the next one
+  std::string name;                                                          // for messages
+};
+
+Source source_of(std::span<const std::byte> bytes, const std::string& name) {
+  return {bytes.size(), [bytes](size_t at, size_t count) { return bytes.subspan(at, count); }, name};
+}
+
+Source open_source(const std::string& path) {
+  const auto file = std::make_shared<std::ifstream>(open_bytes(path));
+  const auto buffer = std::make_shared<std::vector<std::byte>>();
+  file->seekg(0, std::ios::end);
+  return {size_t(std::max<std::streamoff>(file->tellg(), 0)),
+          [=](size_t at, size_t count) -> std::span<const std::byte> {
+            buffer->resize(count);
+            file->seekg(std::streamoff(at));
+            if (!file->read(reinterpret_cast<char*>(buffer->data()), std::streamsize(count)))
+              throw Error(path + ": cannot be read to its end; is it being written?");
+            return *buffer;
+          },
+          path};
+}
+
 template <class T>
-T load(std::span<const std::byte> bytes, size_t at) {
+T load(const Source& source, size_t at) {
   T out;
-  std::memcpy(&out, bytes.data() + at, sizeof(T));
+  std::memcpy(&out, source.piece(at, sizeof(T)).data(), sizeof(T));
   return out;
 }
 
 // Inflates piece by piece, so that counts which lie cost no more memory than the data there really is.
 struct Inflater {
   z_stream stream{};
-  std::span<const std::byte> left;
-  const std::string& name;
+  const Source& source;
+  size_t next;  // byte of the source
+  const std::string& name = source.name;
 
-  Inflater(std::span<const std::byte> bytes, const std::string& file) : left(bytes), name(file) {
+  Inflater(const Source& from, size_t at) : source(from), next(at) {
     if (inflateInit(&stream) != Z_OK) throw Error(name + ": zlib cannot start; is there enough memory?");
   }
   Inflater(const Inflater&) = delete;
@@ -45,11 +76,12 @@ struct Inflater {
   ~Inflater() { inflateEnd(&stream); }
 
   void feed() {
-    if (stream.avail_in > 0 || left.empty()) return;
-    const size_t n = std::min<size_t>(left.size(), 1u << 30);
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(left.data()));
-    stream.avail_in = uInt(n);
-    left = left.subspan(n);
+    constexpr size_t most = 1 << 16;
+    if (stream.avail_in > 0 || next == source.size) return;
+    const auto piece = source.piece(next, std::min(source.size - next, most));
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(piece.data()));
+    stream.avail_in = uInt(piece.size());
+    next += piece.size();
   }
 
   void read(void* to, size_t n) {
@@ -65,7 +97,7 @@ struct Inflater {
       if (result == Z_DATA_ERROR || result == Z_NEED_DICT || result == Z_MEM_ERROR)
         throw Error(fmt::format("{}: the compressed data are damaged ({}); copy the file anew", name,
                                 stream.msg ? stream.msg : "zlib"));
-      if (result == Z_STREAM_END || (got == 0 && stream.avail_in == 0 && left.empty()))
+      if (result == Z_STREAM_END || (got == 0 && stream.avail_in == 0 && next == source.size))
         throw Error(name + ": the compressed data end before the mesh does; is the file whole?");
     }
   }
@@ -99,31 +131,32 @@ struct Inflater {
   }
 };
 
-uint16_t check_header(std::span<const std::byte> bytes, size_t at, const std::string& name) {
-  if (at + header_size > bytes.size()) throw Error(name + ": too short for a serialized mesh; is the file whole?");
-  if (load<uint16_t>(bytes, at) != magic)
+uint16_t check_header(const Source& source, size_t at) {
+  const std::string& name = source.name;
+  if (at + header_size > source.size) throw Error(name + ": too short for a serialized mesh; is the file whole?");
+  if (load<uint16_t>(source, at) != magic)
     throw Error(fmt::format(
         "{}: no serialized mesh at byte {} (0x041c is expected there); is it a serialized file, and whole?", name, at));
-  const uint16_t version = load<uint16_t>(bytes, at + 2);
+  const uint16_t version = load<uint16_t>(source, at + 2);
   if (version != 3 && version != 4)
     throw Error(fmt::format("{}: serialized format {}; versions 3 and 4 are supported", name, version));
   return version;
 }
 
 // Where a mesh starts, from the dictionary at the end of the file; the first one starts at 0 by definition.
-size_t find_mesh(std::span<const std::byte> bytes, uint16_t version, int shape_index, const std::string& name) {
+size_t find_mesh(const Source& source, uint16_t version, int shape_index) {
+  const std::string& name = source.name;
   if (shape_index < 0) throw Error(fmt::format("{}: shape_index {} is negative; they count from 0", name, shape_index));
   if (shape_index == 0) return 0;
   const size_t width = version == 4 ? 8 : 4, index = size_t(shape_index);
-  const size_t count = load<uint32_t>(bytes, bytes.size() - 4);
-  if (count > (bytes.size() - 4) / width)
-    throw Error(name + ": no dictionary of meshes at the end; is the file whole?");
+  const size_t count = load<uint32_t>(source, source.size - 4);
+  if (count > (source.size - 4) / width) throw Error(name + ": no dictionary of meshes at the end; is the file whole?");
   if (index >= count)
     throw Error(fmt::format("{}: shape_index {}, but the file holds {} meshes (0 to {})", name, shape_index, count,
                             int64_t(count) - 1));
-  const size_t dictionary = bytes.size() - 4 - count * width, entry = dictionary + index * width;
-  const uint64_t offset = version == 4 ? load<uint64_t>(bytes, entry) : load<uint32_t>(bytes, entry);
-  if (offset + header_size > dictionary || offset > bytes.size())
+  const size_t dictionary = source.size - 4 - count * width, entry = dictionary + index * width;
+  const uint64_t offset = version == 4 ? load<uint64_t>(source, entry) : load<uint32_t>(source, entry);
+  if (offset + header_size > dictionary || offset > source.size)
     throw Error(fmt::format("{}: mesh {} starts at byte {}, beyond the last", name, shape_index, offset));
   return size_t(offset);
 }
@@ -133,14 +166,11 @@ void skip_name(Inflater& in) {
     if (length == 1 << 16) throw Error(in.name + ": a mesh name of more than 64 KiB; the file is damaged");
 }
 
-}  // namespace
-
-Mesh parse_serialized(std::span<const std::byte> bytes, const std::string& name, int shape_index,
-                      const MeshOptions& options) {
-  const uint16_t version = check_header(bytes, 0, name);
-  const size_t start = find_mesh(bytes, version, shape_index, name);
-  const uint16_t own_version = check_header(bytes, start, name);
-  Inflater in(bytes.subspan(start + header_size), name);
+Mesh read_mesh(const Source& source, int shape_index, const MeshOptions& options) {
+  const std::string& name = source.name;
+  const size_t start = find_mesh(source, check_header(source, 0), shape_index);
+  const uint16_t own_version = check_header(source, start);
+  Inflater in(source, start + header_size);
   const uint32_t flags = in.value<uint32_t>();
   const bool doubles = flags & double_precision;
   if (doubles == bool(flags & single_precision))
@@ -164,9 +194,15 @@ Mesh parse_serialized(std::span<const std::byte> bytes, const std::string& name,
   return mesh;
 }
 
+}  // namespace
+
+Mesh parse_serialized(std::span<const std::byte> bytes, const std::string& name, int shape_index,
+                      const MeshOptions& options) {
+  return read_mesh(source_of(bytes, name), shape_index, options);
+}
+
 Mesh read_serialized(const std::string& path, int shape_index, const MeshOptions& options) {
-  const std::string bytes = read_bytes(path);
-  return parse_serialized(std::as_bytes(std::span(bytes)), path, shape_index, options);
+  return read_mesh(open_source(path), shape_index, options);
 }
 
 }  // namespace ajar

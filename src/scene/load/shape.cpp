@@ -70,11 +70,13 @@ void simple_mesh(Params& p, Shape& shape, Mesh&& mesh, const DMat4& m) {
 
 void sphere(Params& p, Shape& shape, const MeshPart&) {
   const Node* at = find(p, {"center"});
-  const DVec3 center = at == nullptr ? DVec3(0) : vector_of(p.loader, *at, 0);
+  DVec3 center = at == nullptr ? DVec3(0) : vector_of(p.loader, *at, 0);
   const double radius = positive(p, "radius", 1);
+  const DMat4 placed = shape_to_world(p, false);
+  if (p.loader.document.old) center /= glm::length(DVec3(placed[0]));  // which 0.x does not scale
   DMat4 local(radius);
   local[3] = DMat4::col_type(center, 1);
-  const DMat4 m = shape_to_world(p, false) * local;
+  const DMat4 m = placed * local;
   check_invertible(p.loader, p.node, m);
   if (!is_similarity(m)) {
     note(p.loader, p.node,
@@ -84,7 +86,7 @@ void sphere(Params& p, Shape& shape, const MeshPart&) {
     return;
   }
   shape.kind = ShapeKind::sphere;
-  shape.flip = boolean(p, "flip_normals", false);
+  shape.flip = boolean(p, "flip_normals", false) != (!p.loader.document.old && determinant(m) < 0);
   place_quadric(p, shape, m);
 }
 
@@ -100,20 +102,20 @@ void disk(Params& p, Shape& shape, const MeshPart&) {
 
 void cylinder(Params& p, Shape& shape, const MeshPart&) {
   shape.kind = ShapeKind::cylinder;
-  shape.flip = boolean(p, "flip_normals", false);
   const Node *from = find(p, {"p0"}), *to = find(p, {"p1"});
   const DVec3 p0 = from == nullptr ? DVec3(0) : vector_of(p.loader, *from, 0);
   const DVec3 p1 = to == nullptr ? DVec3(0, 0, 1) : vector_of(p.loader, *to, 0);
   const double radius = positive(p, "radius", 1), length = glm::length(p1 - p0);
   if (!(length > 0)) fail(p.loader, p.node, "p0 and p1 are the same point; move one of them");
-  const DVec3 z = (p1 - p0) / length;
-  const DVec3 x = glm::normalize(std::abs(z.x) < 0.8 ? glm::cross(DVec3(1, 0, 0), z) : glm::cross(DVec3(0, 1, 0), z));
+  const DVec3 z = (p1 - p0) / length, x = across(z, p.loader.document.old);  // where u begins
   DMat4 local(1);
   local[0] = DMat4::col_type(x * radius, 0);
   local[1] = DMat4::col_type(glm::cross(z, x) * radius, 0);
   local[2] = DMat4::col_type(p1 - p0, 0);
   local[3] = DMat4::col_type(p0, 1);
-  place_quadric(p, shape, shape_to_world(p, false) * local);
+  const DMat4 placed = shape_to_world(p, false);
+  shape.flip = boolean(p, "flip_normals", false) != (determinant(placed) < 0);
+  place_quadric(p, shape, placed * local);
 }
 
 void rectangle(Params& p, Shape& shape, const MeshPart&) {
@@ -181,7 +183,7 @@ void obj(Params& p, Shape& shape, const MeshPart& part) {
   options.group = obj_group(p);
   const std::string key = options.group < 0 ? path : fmt::format("{}#{}", path, options.group);
   file_mesh(p, shape, part.takes ? key + "#" + part.name : key, options, [&](const MeshOptions& o) {
-    const bool open = part.takes || (p.loader.obj && p.loader.obj->name == path);
+    const bool open = part.takes || o.group >= 0 || (p.loader.obj && p.loader.obj->name == path);
     return open ? join(open_obj(p.loader, path), o) : read_obj(path, o);
   });
 }
@@ -206,7 +208,9 @@ void ply(Params& p, Shape& shape, const MeshPart&) {
 void serialized(Params& p, Shape& shape, const MeshPart&) {
   const std::string path = file(p, "filename");
   const int index = integer(p, "shape_index", 0, 0, 1 << 24);
-  file_mesh(p, shape, fmt::format("{}#{}", path, index), {},
+  MeshOptions options;
+  options.keeps_side = p.loader.document.old;
+  file_mesh(p, shape, fmt::format("{}#{}", path, index), options,
             [&](const MeshOptions& o) { return read_serialized(path, index, o); });
 }
 

@@ -35,16 +35,6 @@ DVec3 point_attribute(const Loader& loader, const Node& node, const char* name) 
   return {(*list)[0], (*list)[1], (*list)[2]};
 }
 
-// What Mitsuba takes for up where none is given: a vector across the line of sight z, another one in 0.x than later.
-DVec3 usual_up(const DVec3& z, bool old) {
-  if (!old) {
-    const double sign = z.z < 0 ? -1 : 1, a = -1 / (sign + z.z);
-    return {1 + sign * z.x * z.x * a, sign * z.x * z.y * a, -sign * z.x};
-  }
-  const DVec3 across = std::abs(z.x) > std::abs(z.y) ? DVec3(z.z, 0, -z.x) : DVec3(0, z.z, -z.y);
-  return glm::cross(glm::normalize(across), z);
-}
-
 DMat4 lookat_of(const Loader& loader, const Node& node) {
   const DVec3 origin = point_attribute(loader, node, "origin"), target = point_attribute(loader, node, "target");
   const DVec3 view = target - origin;
@@ -52,7 +42,7 @@ DMat4 lookat_of(const Loader& loader, const Node& node) {
   const DVec3 z = glm::normalize(view);
   DVec3 up(0);
   if (attribute(node, "up") != nullptr) up = point_attribute(loader, node, "up");
-  if (!(glm::dot(up, up) > 0)) up = usual_up(z, loader.document.old);
+  if (!(glm::dot(up, up) > 0)) up = across(z, loader.document.old);
   const DVec3 left = glm::cross(up, z);
   if (!(glm::dot(left, left) > 1e-16 * glm::dot(up, up)))
     fail(loader, node, "up points along the line of sight; take another one, or leave it out");
@@ -165,6 +155,15 @@ DMat4 animated(Loader& loader, const Node& node) {
 }
 
 }  // namespace
+
+DVec3 across(const DVec3& z, bool old) {
+  if (!old) {
+    const double sign = z.z < 0 ? -1 : 1, a = -1 / (sign + z.z);
+    return {1 + sign * z.x * z.x * a, sign * z.x * z.y * a, -sign * z.x};
+  }
+  const DVec3 third = std::abs(z.x) > std::abs(z.y) ? DVec3(z.z, 0, -z.x) : DVec3(0, z.z, -z.y);
+  return glm::cross(glm::normalize(third), z);
+}
 
 DMat4 transform_of(const Loader& loader, const Node& node) {
   DMat4 m(1);

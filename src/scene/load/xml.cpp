@@ -183,7 +183,7 @@ Node make_node(Reader& r, const Source& s, const pugi::xml_node& xml) {
     std::string value = substitute(r, s, xml, a.value());
     const std::string name = snake_case(a.name());
     if (name == "type") {
-      node.type = snake_case(value);
+      node.type = lower(value);
       node.written = std::move(value);
     } else if (name == "name") {
       node.name = snake_case(value);

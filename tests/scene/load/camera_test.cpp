@@ -246,6 +246,12 @@ TEST(Sensors, UnknownParametersAreNoted) {
   s = load_inside("<integrator type='path'>" + number("maxDepht") + number("rrDepth") + "</integrator>");
   ASSERT_EQ(s.notes.size(), 3u);
   EXPECT_TRUE(says(s.notes, "\"maxDepht\" is not used"));
+  // of each kind of element that has it
+  s = load_inside(
+      "<shape type='sphere'><float name='scale' value='2'/><emitter type='area'><float name='scale' value='2'/>"
+      "</emitter></shape>");
+  EXPECT_TRUE(says(s.notes, "<shape type=\"sphere\">: the parameter \"scale\" is not used"));
+  EXPECT_TRUE(says(s.notes, "<emitter type=\"area\">: the parameter \"scale\" is not used"));
   EXPECT_EQ(load_inside("<integrator type='theirs'>" + number("own") + "</integrator>").notes.size(), 3u);
 }
 

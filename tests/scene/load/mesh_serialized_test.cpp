@@ -1,6 +1,11 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
 
 #include "ajar/core/error.h"
+#include "kit/files.h"
 #include "mesh_samples.h"
 
 namespace ajar {
@@ -73,6 +78,35 @@ TEST(MeshSerialized, several_meshes) {
     EXPECT_NE(serialized_error(file, 3).find("shape_index 3, but the file holds 3 meshes (0 to 2)"), std::string::npos);
     EXPECT_NE(serialized_error(file, -1).find("shape_index -1 is negative"), std::string::npos);
     EXPECT_NE(serialized_error(file, 1 << 30).find("holds 3 meshes"), std::string::npos);
+  }
+}
+
+TEST(MeshSerialized, files_hold_what_bytes_do) {
+  const std::string path = testing::TempDir() + "ajar" + std::to_string(::getpid()) + ".serialized";
+  const Mesh large = make_sphere(100, 100);
+  const std::string bytes =
+      kit::serialized_of({kit::payload_of<float>(make_cube(), 4), kit::payload_of<double>(large, 4)}, 4);
+  std::ofstream(path, std::ios::binary) << bytes;
+  expect_same(read_serialized(path, 0, {}), read(bytes, 0));
+  expect_same(read_serialized(path, 1, {}), read(bytes, 1));
+  std::ofstream(path, std::ios::binary) << "";
+  EXPECT_NE(kit::error_of([&] { read_serialized(path, 0, {}); }).find("too short"), std::string::npos);
+  std::filesystem::remove(path);
+}
+
+// Of a mesh without normals; Mitsuba 0.x turns its triangles.
+TEST(MeshSerialized, an_old_mirror_keeps_the_outside) {
+  Mesh bare = make_rectangle();
+  bare.normals.clear();
+  const std::string bytes = kit::serialized_of({kit::payload_of<float>(bare, 4)}, 4);
+  MeshOptions options;
+  options.to_world[0][0] = -1;
+  for (const bool faceted : {false, true}) {
+    options.face_normals = faceted;
+    options.keeps_side = false;
+    EXPECT_EQ(kit::face_normal(read(bytes, 0, options), 0).z, -1);
+    options.keeps_side = true;
+    EXPECT_EQ(kit::face_normal(read(bytes, 0, options), 0).z, 1);
   }
 }
 

@@ -36,6 +36,23 @@ TEST(Shapes, Sphere) {
   EXPECT_SAYS(error_of(shape("sphere", "<float name='radius' value='0'/>")), "should be greater than 0");
 }
 
+// Mitsuba 0.x scales the radius alone, and keeps the outside of a mirrored sphere.
+TEST(Shapes, SpheresOfOldScenes) {
+  const std::string moved = shape("sphere",
+                                  "<point name='center' x='1' y='2' z='3'/><transform name='toWorld'>"
+                                  "<scale value='2'/><rotate z='1' angle='90'/><translate x='10'/></transform>");
+  const Scene old = load_inside(moved, {}, "0.6.0"), now = load_inside(moved);
+  EXPECT_RGB(Vec3(old.shapes[0].to_world[3]), 8, 1, 3, 1e-5);
+  EXPECT_RGB(Vec3(now.shapes[0].to_world[3]), 6, 2, 6, 1e-5);
+  EXPECT_NEAR(glm::length(Vec3(old.shapes[0].to_world[0])), 2, 1e-6);
+  const std::string mirror = "<transform name='toWorld'><scale x='-1'/></transform>";
+  EXPECT_FALSE(load_inside(shape("sphere", mirror), {}, "0.6.0").shapes[0].flip);
+  EXPECT_TRUE(load_inside(shape("sphere", mirror)).shapes[0].flip);
+  EXPECT_FALSE(load_inside(shape("sphere", mirror + flip)).shapes[0].flip);
+  for (const char* version : {"0.6.0", "3.0.0"})
+    EXPECT_TRUE(load_inside(shape("cylinder", mirror), {}, version).shapes[0].flip) << version;
+}
+
 TEST(Shapes, StretchedSphereBecomesAMesh) {
   const Scene s = load_inside(shape("sphere", "<transform name='to_world'><scale x='2'/></transform>"));
   EXPECT_EQ(s.shapes[0].kind, ShapeKind::mesh);
@@ -49,7 +66,8 @@ TEST(Shapes, RectangleAndCube) {
   EXPECT_RGB(normal(s.meshes[0]), 0, 0, 1, 1e-6);
   EXPECT_RGB(normal(load_inside(shape("rectangle", flip)).meshes[0]), 0, 0, -1, 1e-6);
   EXPECT_EQ(load_inside(shape("cube")).meshes[0].triangles.size(), 12u);
-  EXPECT_EQ(load_inside(shape("Rectangle")).meshes[0].triangles.size(), 2u);
+  for (const char* type : {"Rectangle", "recTangle"})
+    EXPECT_EQ(load_inside(shape(type)).meshes[0].triangles.size(), 2u);
 }
 
 TEST(Shapes, DiskAndCylinder) {
@@ -65,8 +83,11 @@ TEST(Shapes, DiskAndCylinder) {
   EXPECT_NEAR(glm::length(Vec3(m[0])), 0.5, 1e-6);
   EXPECT_NEAR(glm::dot(Vec3(m[0]), Vec3(m[2])), 0, 1e-6);
   EXPECT_GT(glm::determinant(m), 0);
-  s = load_inside(shape("cylinder"));
-  EXPECT_RGB(Vec3(s.shapes[0].to_world * Vec4(0, 0, 1, 1)), 0, 0, 1, 1e-6);
+  for (const char* version : {"0.6.0", "3.0.0"}) {
+    s = load_inside(shape("cylinder"), {}, version);
+    EXPECT_RGB(Vec3(s.shapes[0].to_world * Vec4(0, 0, 1, 1)), 0, 0, 1, 1e-6);
+    EXPECT_RGB(Vec3(s.shapes[0].to_world[0]), 1, 0, 0, 0);  // where u begins
+  }
   EXPECT_SAYS(error_of(shape("cylinder", "<point name='p0' z='1'/>")), "the same point");
 }
 

@@ -68,6 +68,10 @@ TEST(Transform, WrongOnesAreErrors) {
   EXPECT_SAYS(error("<translate x='nan'/>"), "\"nan\" is not a number");
   EXPECT_SAYS(error("<translate x='1e99'/>"), "beyond the range");
   EXPECT_SAYS(error("<scale value='1e30'/><scale value='1e30'/>"), "beyond the range");
+  EXPECT_SAYS(error("<scale val='2'/>"), "<scale>: has neither value nor x, y, z");
+  EXPECT_SAYS(error("<scale/>"), "has neither value nor x, y, z");
+  EXPECT_SAYS(error("<translate dx='2'/>"), "has neither value nor x, y, z");
+  EXPECT_SAYS(error("<scale value='2' x='1'/>"), "has both value and x, y, z");
   EXPECT_SAYS(error("<rotate angle='5'/>"), "needs an axis");
   EXPECT_SAYS(error("<rotate y='1'/>"), "needs angle=\"...\", in degrees");
   EXPECT_EQ(error("<rotate x='0' y='0' z='0' angle='0'/>"), "");
