@@ -41,7 +41,7 @@ kit::Estimate flat(int width, int height, double value) {
   return e;
 }
 
-void render_all(const Case& c, const Scene& scene, RenderOptions o, int batches, Outcome& out) {
+void render_all(const Case& c, const Scene& scene, RenderOptions o, int batches, CellTable* walls, Outcome& out) {
   const Accel accel(scene);
   const bool guided = is_guided(o.integrator);
   StoredFields stored;
@@ -51,7 +51,10 @@ void render_all(const Case& c, const Scene& scene, RenderOptions o, int batches,
     o.seed = uint64_t(i) + 1;
     RenderState state = start_render(scene, o);
     if (guided && c.fields) go_on_from(stored, learn_options(o), state.learning, state.film);
+    CellTable& table = state.learning.fields.table;
+    if (walls && table.compartments.empty()) kit::copy_walls(*walls, table);
     render(scene, accel, o, state, nullptr);
+    if (walls && !table.compartments.empty()) kit::copy_walls(table, *walls);
     const Picture p = develop(state.film);
     out.runs.emplace_back(p.pixels.begin(), p.pixels.end());
     for (double& v : out.runs.back()) v /= c.factor;
@@ -72,10 +75,10 @@ bool is_black(const Outcome& out) {
 
 }  // namespace
 
-Outcome run(const Case& c, const std::string& integrator, int batches, double passes) {
+Outcome run(const Case& c, const std::string& integrator, int batches, double passes, CellTable* walls) {
   Outcome out;
   try {
-    render_all(c, c.make(), options_of(c, integrator, passes), batches, out);
+    render_all(c, c.make(), options_of(c, integrator, passes), batches, walls, out);
   } catch (const Error& e) {
     out.refusal = e.what();
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "cases.h"
+#include "kit/walls.h"
 #include "kit/ztest.h"
 
 namespace ajar::stress {
@@ -20,8 +21,9 @@ struct Outcome {
   double noise = 0;        ///< root of the mean variance of one pass, over the mean brightness
 };
 
-/// batches: of renders with seeds of their own, each of so many times the case's passes.
-Outcome run(const Case& c, const std::string& integrator, int batches, double passes = 1);
+/// batches: of renders with seeds of their own, each of so many times the case's passes. walls: kept from render to
+/// render of the case, for whom their time does not matter.
+Outcome run(const Case& c, const std::string& integrator, int batches, double passes = 1, CellTable* walls = nullptr);
 /// What the image ought to be; runs of the judge or twin if they must be made. Nothing where it is not known.
 Outcome reference(const Case& c, int batches);
 /// Whether the integrator can find all the light of the case.

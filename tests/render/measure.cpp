@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "kit/walls.h"
+
 namespace ajar {
 namespace {
 
@@ -28,8 +30,9 @@ RenderOptions statistical(const std::string& integrator, int max_depth) {
   return o;
 }
 
-RenderState rendered(const Scene& scene, const Accel& accel, const RenderOptions& options) {
+RenderState rendered(const Scene& scene, const Accel& accel, const RenderOptions& options, const CellTable* walls) {
   RenderState state = start_render(scene, options);
+  if (walls) kit::copy_walls(*walls, state.learning.fields.table);
   render(scene, accel, options, state, [](const RenderState&) { return true; });
   EXPECT_EQ(state.stats.rejected, 0u) << (state.stats.replay.empty() ? "" : state.stats.replay[0]);
   return state;
@@ -40,10 +43,13 @@ kit::Estimate measure(const Scene& scene, const RenderOptions& options, const Re
   RenderOptions o = options;
   o.spp = plan.passes;
   std::vector<std::vector<double>> runs;
+  CellTable walls;
   for (int i = 0; i < batches_of(plan); ++i) {
     o.seed = plan.seed + uint64_t(i);
-    const Picture p = develop(rendered(scene, accel, o).film);
+    RenderState state = rendered(scene, accel, o, i > 0 ? &walls : nullptr);
+    const Picture p = develop(state.film);
     runs.emplace_back(p.pixels.begin(), p.pixels.end());
+    walls = std::move(state.learning.fields.table);
   }
   return kit::estimate(scene.camera.crop_width, scene.camera.crop_height, std::move(runs));
 }
@@ -56,9 +62,11 @@ std::map<std::pair<int, int>, kit::Estimate> measure_techniques(const Scene& sce
   const size_t pixels = size_t(scene.camera.crop_width) * size_t(scene.camera.crop_height);
   std::map<std::pair<int, int>, std::vector<std::vector<double>>> runs;
   const int batches = batches_of(plan);
+  CellTable walls;
   for (int i = 0; i < batches; ++i) {
     o.seed = plan.seed + uint64_t(i);
-    const RenderState state = rendered(scene, accel, o);
+    RenderState state = rendered(scene, accel, o, i > 0 ? &walls : nullptr);
+    walls = std::move(state.learning.fields.table);
     for (const auto& [st, layer] : state.pyramid.layers) {
       auto& all = runs[st];
       all.resize(size_t(batches), std::vector<double>(3 * pixels, 0.0));

@@ -18,8 +18,10 @@ struct Repeats {
 /// Options of the statistical tests: independent numbers, so that the spread of renders is their variance, and fields
 /// that guide wherever they may.
 RenderOptions statistical(const std::string& integrator, int max_depth = -1);
-/// Renders to the end; fails the test when a value was rejected.
-RenderState rendered(const Scene& scene, const Accel& accel, const RenderOptions& options);
+/// Renders to the end; fails the test when a value was rejected. walls: a table with those
+/// of another render of the scene, which are the same for all.
+RenderState rendered(const Scene& scene, const Accel& accel, const RenderOptions& options,
+                     const CellTable* walls = nullptr);
 kit::Estimate measure(const Scene& scene, const RenderOptions& options, const Repeats& plan = {});
 /// The raw image of every strategy (s, t).
 std::map<std::pair<int, int>, kit::Estimate> measure_techniques(const Scene& scene, RenderOptions options,

@@ -87,10 +87,11 @@ class Stress : public testing::TestWithParam<Case> {};
 TEST_P(Stress, IsBorne) {
   const Case& c = GetParam();
   const Outcome right = judged ? reference(c, batches) : Outcome{};
+  CellTable walls;
   for (const std::string& integrator : integrator_names()) {
     if (!can_find(c, integrator) || (c.fields && !is_guided(integrator))) continue;
     const double passes = integrator.ends_with("vpl") && c.passes > 8 ? 0.25 : 1;  // 256 light subpaths each
-    const Verdict v = judge(c, integrator, run(c, integrator, batches, passes), right);
+    const Verdict v = judge(c, integrator, run(c, integrator, batches, passes, &walls), right);
     EXPECT_TRUE(v.ok) << integrator << ": " << v.message;
   }
 }

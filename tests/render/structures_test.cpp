@@ -68,6 +68,21 @@ TEST(Structures, OnlyAdaptiveCellsAreCutAlongWalls) {
   }
 }
 
+// What measure() stands on.
+TEST(Structures, WallsAreThoseOfAnyRender) {
+  Scene scene = two_rooms(30);
+  set_size(scene.camera, 16, 9);
+  const Accel accel(scene);
+  RenderOptions o = statistical("guided-bdpt", 5);
+  o.spp = 6, o.seed = 1;
+  const RenderState other = rendered(scene, accel, o);
+  o.seed = 2;
+  const CellTable& walls = other.learning.fields.table;
+  ASSERT_FALSE(walls.cuts.empty());
+  ASSERT_FALSE(walls.portals.empty());
+  EXPECT_EQ(develop(rendered(scene, accel, o).film).pixels, develop(rendered(scene, accel, o, &walls).film).pixels);
+}
+
 // An image that ends among them is made of those pixels that were traced, which stand for the others.
 TEST(BlindPasses, TraceSomePixelsOfLargeImages) {
   const Scene scene = cornell(128);
