@@ -163,6 +163,16 @@ TEST(Mis, StaysANumberForZeroAndInfiniteDensities) {
         }
 }
 
+// Zero times infinity is nothing, not the largest ratio there is.
+TEST(Mis, RatiosAreNumbers) {
+  const double inf = INFINITY;
+  EXPECT_EQ(ratio(inf * 0, 1), 0);
+  EXPECT_EQ(ratio(inf, inf), 0);
+  EXPECT_EQ(ratio(inf, 1), largest_ratio);
+  EXPECT_EQ(ratio(1, 0), 0);
+  EXPECT_EQ(ratio(3, 2), 1.5);
+}
+
 TEST(Mis, PointLightSeenByOneStrategyHasAllTheWeight) {
   // Point light, mirror, diffuse wall, lens: neither hitting the light nor next-event estimation can make it, and the
   // wall is joined to the lens or, from a longer camera path, to nothing else.

@@ -180,6 +180,20 @@ TEST(LightTree, StandsExtremes) {
 }
 
 // Many at one place, and all alike: no deep recursion, every one has a chance.
+// Promises beyond the range of numbers: none of such lamps is forgotten.
+TEST(LightTree, PromisesHaveASum) {
+  Scene scene;
+  for (int i = 0; i < 8; ++i)
+    scene.lights[add_light(scene, LightKind::point, Rgb(1e37f))].position = {0.001f * float(i), 0, 0};
+  finish(scene);
+  const LightTree& t = scene.light_tree;
+  const Receiver at{{0.02f, 0, 0}, Vec3(0)};
+  double sum = 0;
+  for (uint32_t k = 0; k < t.pieces.size(); ++k) sum += double(choice_pdf(t, 0, at, k));
+  EXPECT_NEAR(sum, 1, 1e-4);
+  for (uint32_t n = 0; n < t.nodes.size(); ++n) EXPECT_LE(importance(t, n, at), most_importance);
+}
+
 TEST(LightTree, StandsLampsAtOnePlace) {
   Scene scene = many_lights(1, 2);
   for (int i = 0; i < 5000; ++i) scene.lights[add_light(scene, LightKind::point, Rgb(1))].position = {0.1f, 0.1f, 0.1f};
