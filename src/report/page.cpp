@@ -173,7 +173,7 @@ void write_report(const json& results, const std::filesystem::path& dir) {
                                  {"script", fmt::format("{}", fmt::join(page::scripts, ""))}}));
   std::error_code ignored;
   if (curves.empty())
-    fs::remove(dir / "curves.svg", ignored);  // of other results
+    std::filesystem::remove(dir / "curves.svg", ignored);  // of other results
   else
     write_text((dir / "curves.svg").string(), curves);
 }

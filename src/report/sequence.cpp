@@ -127,7 +127,7 @@ std::string sequence_csv(const std::vector<FrameFigures>& frames) {
   for (const FrameFigures& f : frames)
     for (const auto& [name, value] : f.parameters) names.insert(name);
   std::string out = "frame";
-  for (const std::string& name : names) out += "," + cell(name);
+  for (const std::string& name : names) (out += ",") += cell(name);
   out += ",seconds,cpu_seconds,spp,mean,relmse,relmse_trimmed,flicker\n";
   for (const FrameFigures& f : frames) {
     out += fmt::format("{}", f.frame);

@@ -1,4 +1,6 @@
 // The same bytes with any number of threads, after a stop and after a checkpoint.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <fstream>
 

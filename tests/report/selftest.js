@@ -102,6 +102,9 @@ async function test_reach() {
   input(one('.reach[type=range]', room), 600);
   check('the slider moves the figures', cells(2).join() !== before && cells(0)[2] === '1', cells(2).join());
   check('path gets there now', !cells(1)[1].startsWith('not'), cells(1).join());
+  input(one('.reach[type=range]', room), 1000);
+  check('what all have from the first is a bound', [0, 1, 2].every(i => cells(i)[1].startsWith('≤ ')), cells(1).join());
+  same('and no gain', cells(2)[2], '–');
 }
 
 const scratch = document.createElement('canvas').getContext('2d', {willReadFrequently: true});
