@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ajar/report/account.h"
+#include "ajar/report/json.h"
 #include "planning.h"
 #include "version.h"
 
@@ -23,11 +24,6 @@ double peak_bytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return double(usage.ru_maxrss) * 1024;
-}
-
-// On one line. What is no UTF-8, such as a file's name may be, is replaced.
-std::string in_text(const nlohmann::ordered_json& j) {
-  return j.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 double per(double amount, double of) { return of > 0 ? amount / of : 0; }
@@ -81,9 +77,7 @@ nlohmann::ordered_json phases_of(double load, double build, nlohmann::ordered_js
 
 }  // namespace
 
-std::string record_of(const nlohmann::ordered_json& summary) {
-  return summary.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-}
+std::string record_of(const nlohmann::ordered_json& summary) { return text_of(summary, 2) + "\n"; }
 
 nlohmann::ordered_json summary(const Run& run, const RenderState& state) {
   const Counters& n = state.stats.counters;
@@ -130,7 +124,7 @@ nlohmann::ordered_json summary(const Run& run, const RenderState& state) {
 Metadata metadata(const Run& run, const RenderState& state) {
   return {{"ajar:version", std::string(version)},
           {"ajar:scene", run.scene_path},
-          {"ajar:options", in_text(options_json(run, state.film))},
+          {"ajar:options", text_of(options_json(run, state.film), -1)},
           {"ajar:seed", double(run.options.seed)},
           {"ajar:spp", state.film.passes + double(state.film.chunks) / chunk_count(state.film)},
           {"ajar:seconds", state.stats.seconds},
@@ -144,7 +138,7 @@ std::string checkpoint_key(const Run& run, const Film& film) {
     o.erase(budget);
   std::sort(o["defines"].begin(), o["defines"].end());
   return fmt::format("{},{},files with checksum {:016x},{}", version,
-                     std::filesystem::path(run.scene_path).filename().string(), run.content, in_text(o));
+                     std::filesystem::path(run.scene_path).filename().string(), run.content, text_of(o, -1));
 }
 
 std::string integrator_of(const std::string& checkpoint_key) {
