@@ -10,8 +10,11 @@
 #include "ajar/core/error.h"
 
 namespace ajar {
+namespace {
 
 using Json = nlohmann::ordered_json;
+
+}  // namespace
 
 std::string text_of(const Json& value, int indent) {
   return value.dump(indent, ' ', false, Json::error_handler_t::replace);
