@@ -245,14 +245,9 @@ void render_frames(Work& w) {
   }
 }
 
-std::string figures_stem(const Work& w) { return w.folder + "/animation"; }
-
 // What would stand in the way of the files to come.
 void check_outputs(const Work& w) {
-  const std::string frame = frame_name(w.pattern, w.to_do.front());
-  for (const char* extension : {".exr", ".png", ".json"})
-    check_file(fs::path(frame).replace_extension(extension).string());
-  for (const char* extension : {".json", ".csv", ".svg"}) check_file(figures_stem(w) + extension);
+  check_files(w.arguments, w.to_do.front());
   if (w.carries) check_file(carried_name(w));
 }
 
@@ -267,7 +262,7 @@ void write_figures(const Work& w) {
   std::optional<FramePattern> reference;
   if (!w.arguments.reference.empty()) reference = parse_pattern("--reference", w.arguments.reference);
   const std::vector<FrameFigures> figures = measure(w.pattern, w.shooting.timeline, reference, w.options_key);
-  const std::string stem = figures_stem(w);
+  const std::string stem = w.folder + "/animation";
   write_text(stem + ".json", sequence_json(figures));
   write_text(stem + ".csv", sequence_csv(figures));
   write_text(stem + ".svg", sequence_svg(figures, fmt::format("{}, {}", fs::path(w.arguments.scene).stem().string(),

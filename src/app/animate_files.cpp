@@ -28,8 +28,8 @@ std::vector<Named> written(const AnimateArguments& a, const FrameRange& frames) 
 
 std::vector<Named> read(const AnimateArguments& a, const FrameRange& frames, const Scene& scene,
                         const LoadCache& cache) {
-  std::vector<Named> out = {{"the scene", a.scene}};
-  for (const std::string& file : scene.files) out.push_back({"a file of the scene,", file});
+  std::vector<Named> out = files_of(scene);
+  out.insert(out.begin(), {"the scene", a.scene});
   for (const auto& [file, sum] : cache.files) out.push_back({"a file of the scene,", file});
   if (!a.keyframes.empty()) out.push_back({"--keyframes", a.keyframes});
   if (a.reference.empty()) return out;
@@ -42,6 +42,10 @@ std::vector<Named> read(const AnimateArguments& a, const FrameRange& frames, con
 
 void check_apart(const AnimateArguments& a, const FrameRange& frames, const Scene& scene, const LoadCache& cache) {
   require_apart(written(a, frames), read(a, frames, scene, cache));
+}
+
+void check_files(const AnimateArguments& a, int frame) {
+  for (const Named& file : written(a, {frame, frame, frame + 1})) check_file(file.path);
 }
 
 void check_references(const AnimateArguments& a, Shooting& shooting) {

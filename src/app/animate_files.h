@@ -10,6 +10,8 @@ namespace ajar {
 /// The files of the frames of the range and of their figures, and the film, are held apart from all that is read: the
 /// scene's, and images and meshes of all scenes that were loaded with the cache.
 void check_apart(const AnimateArguments&, const FrameRange&, const Scene&, const LoadCache&);
+/// Throws Error where a file of the frame, of the figures or of the film could not be written.
+void check_files(const AnimateArguments&, int frame);
 /// Throws Error unless every frame of the range has its reference, sound and of the frame's size.
 void check_references(const AnimateArguments&, Shooting&);
 

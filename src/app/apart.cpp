@@ -17,6 +17,12 @@ namespace {
 
 }  // namespace
 
+std::vector<Named> files_of(const Scene& scene) {
+  std::vector<Named> out;
+  for (const std::string& file : scene.files) out.push_back({"a file of the scene,", file});
+  return out;
+}
+
 void require_apart(const Named& output, const Named& other) {
   if (is_same_file(output.path, other.path)) refuse(output, other);
 }

@@ -5,12 +5,17 @@
 #include <string>
 #include <vector>
 
+#include "ajar/scene/scene.h"
+
 namespace ajar {
 
 /// A file, and what names it in messages: "--log", "the record".
 struct Named {
   std::string option, path;
 };
+
+/// What a scene was read from.
+std::vector<Named> files_of(const Scene& scene);
 
 /// Throws Error where both are the same file, there or not.
 void require_apart(const Named& output, const Named& other);

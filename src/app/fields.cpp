@@ -29,9 +29,9 @@ struct FieldsArguments {
 constexpr const char* pictures[] = {"cells.png", "irradiance.png", "importance.png", "strata-q.png", "strata-w.png"};
 
 void check_apart(const FieldsArguments& a, const Scene& scene) {
-  std::vector<Named> written, read = {{"the fields", a.file}};
+  std::vector<Named> written, read = files_of(scene);
+  read.push_back({"the fields", a.file});
   for (const char* name : pictures) written.push_back({"-o, picture", (std::filesystem::path(a.out) / name).string()});
-  for (const std::string& file : scene.files) read.push_back({"a file of the scene,", file});
   require_apart(written, read);
 }
 

@@ -165,11 +165,7 @@ Log open_log(const RenderArguments& a, std::optional<Picture> reference) {
   return log;
 }
 
-void check_apart(const RenderArguments& a, const Scene& scene) {
-  std::vector<Named> files;
-  for (const std::string& file : scene.files) files.push_back({"a file of the scene,", file});
-  require_apart(written(a), files);
-}
+void check_apart(const RenderArguments& a, const Scene& scene) { require_apart(written(a), files_of(scene)); }
 
 void check_outputs(const RenderArguments& a) {
   check_name(a);

@@ -41,7 +41,6 @@ struct Bench {
 /// or of another scene.
 std::optional<Json> find_run(const Bench& bench, const Stand& stand, const Method& method, uint64_t seed) {
   const fs::path path = bench.run_path(stand, method, seed);
-  std::error_code unreadable;
   if (!is_there(path.string())) return {};
   Json file = read_json(path, "delete it, and the run is made again");
   if (!file.is_object() || !file.contains("run") || !file.contains("reference"))
@@ -149,8 +148,7 @@ void make_techniques(Bench& bench, const Stand& stand, const LoadedScene& loaded
   const double amount = (all.cpu_seconds + all.seconds + all.spp) / 10;
   for (const Method& method : bench.suite.methods) {
     const fs::path folder = bench.options.folder / "techniques" / stand.scene->name / method.name;
-    std::error_code unreadable;
-    if (!has_strategies(method.options.integrator) || fs::exists(folder, unreadable) || bench.stopped) continue;
+    if (!has_strategies(method.options.integrator) || is_there(folder.string()) || bench.stopped) continue;
     Racer racer = make_racer(method, *stand.scene, loaded, bench.suite.seeds[0], bench.options.threads);
     racer.options = with_budget(racer.options, with_amount(all, all.spp > 0 ? std::max(amount, 1.0) : amount));
     racer.options.techniques = true;
@@ -266,8 +264,7 @@ void claim_folder(const Bench& bench) {
   const fs::path path = bench.options.folder / "suite.json";
   Json key = to_json(bench.suite);
   key["version"] = bench.options.version;
-  std::error_code unreadable;
-  if (fs::exists(path, unreadable)) {
+  if (is_there(path.string())) {
     if (read_json(path, "delete the folder, or name another one with -o") != key)
       throw Error(fmt::format("{}: holds runs of another suite than {} asks for{}; name another folder with -o",
                               bench.options.folder.string(), bench.suite.path.string(),

@@ -12,11 +12,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string shown(const Json& value) {
-  const std::string whole = text_of(value, -1);
-  return whole.size() <= 40 ? whole : whole.substr(0, 37) + "...";
-}
-
 }  // namespace
 
 void fail(const Element& e, const std::string& what) {
@@ -24,7 +19,7 @@ void fail(const Element& e, const std::string& what) {
 }
 
 void require_keys(const Element& e, const std::vector<std::string>& known) {
-  if (!e.value->is_object()) fail(e, fmt::format("is {}; write an object {{...}}", shown(*e.value)));
+  if (!e.value->is_object()) fail(e, fmt::format("is {}; write an object {{...}}", short_text_of(*e.value)));
   for (const auto& [key, value] : e.value->items())
     if (std::find(known.begin(), known.end(), key) == known.end())
       fail(e, fmt::format("unknown key \"{}\"; known are {}", key, fmt::join(known, ", ")));
@@ -43,7 +38,7 @@ Element get(const Element& e, const std::string& key, const std::string& cure) {
 }
 
 std::vector<Element> items(const Element& e, const std::string& cure) {
-  if (!e.value->is_array() || e.value->empty()) fail(e, fmt::format("is {}; {}", shown(*e.value), cure));
+  if (!e.value->is_array() || e.value->empty()) fail(e, fmt::format("is {}; {}", short_text_of(*e.value), cure));
   std::vector<Element> list;
   for (size_t i = 0; i < e.value->size(); ++i) {
     const Json& item = (*e.value)[i];
@@ -57,24 +52,24 @@ std::vector<Element> items(const Element& e, const std::string& cure) {
 
 std::string text(const Element& e) {
   if (!e.value->is_string() || e.value->get<std::string>().empty())
-    fail(e, fmt::format("is {}; write a text in quotes", shown(*e.value)));
+    fail(e, fmt::format("is {}; write a text in quotes", short_text_of(*e.value)));
   return e.value->get<std::string>();
 }
 
 bool flag(const Element& e) {
-  if (!e.value->is_boolean()) fail(e, fmt::format("is {}; write true or false", shown(*e.value)));
+  if (!e.value->is_boolean()) fail(e, fmt::format("is {}; write true or false", short_text_of(*e.value)));
   return e.value->get<bool>();
 }
 
 double number(const Element& e, double least, double most) {
   if (!e.value->is_number() || !(e.value->get<double>() >= least && e.value->get<double>() <= most))
-    fail(e, fmt::format("is {}; write a number from {} to {}", shown(*e.value), least, most));
+    fail(e, fmt::format("is {}; write a number from {} to {}", short_text_of(*e.value), least, most));
   return e.value->get<double>();
 }
 
 int64_t integer(const Element& e, int64_t least, int64_t most) {
   const double whole = number(e, double(least), double(most));
-  if (whole != std::floor(whole)) fail(e, fmt::format("is {}; write a whole number", shown(*e.value)));
+  if (whole != std::floor(whole)) fail(e, fmt::format("is {}; write a whole number", short_text_of(*e.value)));
   return int64_t(whole);
 }
 

@@ -20,6 +20,11 @@ std::string text_of(const Json& value, int indent) {
   return value.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
+std::string short_text_of(const Json& value) {
+  const std::string whole = text_of(value, -1);
+  return whole.size() <= 40 ? whole : whole.substr(0, 37) + "...";
+}
+
 Json read_json(const std::filesystem::path& path, const char* cure) {
   std::ifstream in(path, std::ios::binary);
   std::error_code none_such;
@@ -31,7 +36,7 @@ Json read_json(const std::filesystem::path& path, const char* cure) {
     if (event == Json::parse_event_t::object_start) keys.emplace_back();
     if (event == Json::parse_event_t::object_end) keys.pop_back();
     if (event == Json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
-      throw Error(fmt::format("{}: key {} comes twice in one object; keep one", path.string(), text_of(parsed, -1)));
+      throw Error(fmt::format("{}: key {} comes twice in one object; keep one", path.string(), short_text_of(parsed)));
     return true;
   };
   try {

@@ -46,7 +46,7 @@ kit::Estimate measure(const Scene& scene, const RenderOptions& options, const Re
   CellTable walls;
   for (int i = 0; i < batches_of(plan); ++i) {
     o.seed = plan.seed + uint64_t(i);
-    RenderState state = rendered(scene, accel, o, i > 0 ? &walls : nullptr);
+    RenderState state = rendered(scene, accel, o, &walls);
     const Picture p = develop(state.film);
     runs.emplace_back(p.pixels.begin(), p.pixels.end());
     walls = std::move(state.learning.fields.table);
@@ -65,7 +65,7 @@ std::map<std::pair<int, int>, kit::Estimate> measure_techniques(const Scene& sce
   CellTable walls;
   for (int i = 0; i < batches; ++i) {
     o.seed = plan.seed + uint64_t(i);
-    RenderState state = rendered(scene, accel, o, i > 0 ? &walls : nullptr);
+    RenderState state = rendered(scene, accel, o, &walls);
     walls = std::move(state.learning.fields.table);
     for (const auto& [st, layer] : state.pyramid.layers) {
       auto& all = runs[st];

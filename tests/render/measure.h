@@ -18,8 +18,8 @@ struct Repeats {
 /// Options of the statistical tests: independent numbers, so that the spread of renders is their variance, and fields
 /// that guide wherever they may.
 RenderOptions statistical(const std::string& integrator, int max_depth = -1);
-/// Renders to the end; fails the test when a value was rejected. walls: a table with those
-/// of another render of the scene, which are the same for all.
+/// Renders to the end; fails the test when a value was rejected. walls: a table with those of another render of the
+/// scene, which are the same for all; without any they are found.
 RenderState rendered(const Scene& scene, const Accel& accel, const RenderOptions& options,
                      const CellTable* walls = nullptr);
 kit::Estimate measure(const Scene& scene, const RenderOptions& options, const Repeats& plan = {});

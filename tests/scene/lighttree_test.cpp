@@ -179,7 +179,6 @@ TEST(LightTree, StandsExtremes) {
   }
 }
 
-// Many at one place, and all alike: no deep recursion, every one has a chance.
 // Promises beyond the range of numbers: none of such lamps is forgotten.
 TEST(LightTree, PromisesHaveASum) {
   Scene scene;
@@ -194,6 +193,7 @@ TEST(LightTree, PromisesHaveASum) {
   for (uint32_t n = 0; n < t.nodes.size(); ++n) EXPECT_LE(importance(t, n, at), most_importance);
 }
 
+// Many at one place, and all alike: no deep recursion, every one has a chance.
 TEST(LightTree, StandsLampsAtOnePlace) {
   Scene scene = many_lights(1, 2);
   for (int i = 0; i < 5000; ++i) scene.lights[add_light(scene, LightKind::point, Rgb(1))].position = {0.1f, 0.1f, 0.1f};

@@ -15,5 +15,7 @@ nlohmann::ordered_json read_json(const std::filesystem::path& path,
 /// Text over lines indented by so many blanks, or on one line for -1. Bytes that are no UTF-8, as a file's name may
 /// have, are replaced.
 std::string text_of(const nlohmann::ordered_json& value, int indent);
+/// On one line, of forty characters at most: for messages.
+std::string short_text_of(const nlohmann::ordered_json& value);
 
 }  // namespace ajar
