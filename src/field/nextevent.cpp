@@ -19,25 +19,22 @@ bool is_plain(const Scene& scene, const LightCut* cut) {
   return !scene.light_tree.sky.empty() && (!cut || cut->plain != 0);
 }
 
-// What every entry of the vertex's cut promises it, times what was learned of it.   (V3)
-struct Chances {
-  const LightCut* cut = nullptr;  // null: the tree alone
-  Receiver at;
-  float asks = 1, total = 0;
-  float of[LightRules{}.most];
-};
-bool is_cut(const Chances& c) { return c.cut && c.cut->count > 1; }
-void set_chances(const LightTree& tree, const Guide& guide, const Vec3& p, Chances& c) {
+bool is_cut(const LightChances& c) { return c.cut && c.cut->count > 1; }
+
+const LightChances& know(const LightTree& tree, const Guide& guide, const Vec3& p, LightChances& c) {
+  if (c.known) return c;
+  c.known = true;
   c.cut = cut_of(guide);
   c.at = receiver_at(guide, p);
   c.asks = c.cut ? c.cut->asks : 1;
   c.total = 0;
-  if (!is_cut(c)) return;
+  if (!is_cut(c)) return c;
   for (uint32_t i = 0; i < c.cut->count; ++i) {
     const LightEntry& e = guide.fields->lights.entries[c.cut->first + i];
     c.of[i] = std::min(most_importance, e.weight * importance(tree, e.node, c.at));
     c.total += c.of[i];
   }
+  return c;
 }
 
 // Whether a light is asked at all; u becomes uniform again.
@@ -48,7 +45,7 @@ bool is_asked(float asks, float& u) {
   return true;
 }
 
-uint32_t draw(const Chances& c, float& u) {
+uint32_t draw(const LightChances& c, float& u) {
   float at = u * c.total;
   uint32_t i = 0, last = 0;
   for (; i < c.cut->count; ++i) {
@@ -59,39 +56,6 @@ uint32_t draw(const Chances& c, float& u) {
   }
   u = std::clamp(at / c.of[last], 0.0f, one_minus_epsilon);
   return last;
-}
-
-// A piece by the chances.
-bool choose_piece(const Scene& scene, const Guide& guide, const Chances& c, float u, uint32_t& place, float& pdf) {
-  const LightTree& tree = scene.light_tree;
-  place = none, pdf = c.asks;
-  if (tree.nodes.empty() || !is_asked(c.asks, u)) return false;
-  if (tree.pieces.size() == 1) {
-    place = 0;
-    return true;
-  }
-  uint32_t node = 0;
-  float below;
-  if (is_cut(c)) {
-    if (!(c.total > 0)) return false;
-    const uint32_t entry = draw(c, u);
-    pdf *= c.of[entry] / c.total;
-    node = guide.fields->lights.entries[c.cut->first + entry].node;
-    place = tree.nodes[node].first;
-  }
-  if (!choose(tree, node, c.at, u, place, below)) return false;
-  pdf *= below;
-  return pdf > 0;
-}
-
-float piece_pdf(const Scene& scene, const Guide& guide, const Chances& c, uint32_t place) {
-  const LightTree& tree = scene.light_tree;
-  if (tree.pieces.size() == 1) return c.asks;
-  if (!is_cut(c)) return c.asks * choice_pdf(tree, 0, c.at, place);
-  const LearnedLights& v = guide.fields->lights;
-  const uint32_t entry = entry_of(v, *c.cut, place);
-  const float chance = c.of[entry - c.cut->first];
-  return chance > 0 ? c.asks * (chance / c.total) * choice_pdf(tree, v.entries[entry].node, c.at, place) : 0;
 }
 
 // A light of the sky as a whole, by power. Which piece that would have been is left open.
@@ -113,7 +77,16 @@ double pdf_plain(const Scene& scene, const Guide& guide, const LightCut* cut, co
   return pdf * double(pick) * (cut ? double(cut->asks) : 1);
 }
 
+float wrapped(float u) { return std::min(u - std::floor(u), one_minus_epsilon); }
+
 }  // namespace
+
+LightNumbers spread(const LightNumbers& first, int i, int n) {
+  constexpr float plastic = 0.7548776662f;  // 1 / 1.3247..., the root of x^3 = x + 1 (Roberts 2018)
+  const float k = float(i);
+  return {wrapped(first.choice + k / float(n)),
+          {wrapped(first.point.x + k * plastic), wrapped(first.point.y + k * plastic * plastic)}};
+}
 
 bool chooses_light(const Scene& scene, const Guide& guide) {
   const LightCut* cut = cut_of(guide);
@@ -121,29 +94,50 @@ bool chooses_light(const Scene& scene, const Guide& guide) {
   return !one || (cut && cut->asks < 1);
 }
 
-bool choose_light(const Scene& scene, const Guide& guide, const Vec3& p, float u, uint32_t& place, float& pdf) {
-  Chances c;
-  set_chances(scene.light_tree, guide, p, c);
-  return choose_piece(scene, guide, c, u, place, pdf);
+bool choose_light(const Scene& scene, const Guide& guide, const Vec3& p, LightChances& chances, float u,
+                  uint32_t& place, float& pdf) {
+  const LightTree& tree = scene.light_tree;
+  const LightChances& c = know(tree, guide, p, chances);
+  place = none, pdf = c.asks;
+  if (tree.nodes.empty() || !is_asked(c.asks, u)) return false;
+  if (tree.pieces.size() == 1) {
+    place = 0;
+    return true;
+  }
+  uint32_t node = 0;
+  float below;
+  if (is_cut(c)) {
+    if (!(c.total > 0)) return false;
+    const uint32_t entry = draw(c, u);
+    pdf *= c.of[entry] / c.total;
+    node = guide.fields->lights.entries[c.cut->first + entry].node;
+    place = tree.nodes[node].first;
+  }
+  if (!choose(tree, node, c.at, u, place, below)) return false;
+  pdf *= below;
+  return pdf > 0;
 }
 
-float light_pdf(const Scene& scene, const Guide& guide, const Vec3& p, uint32_t place) {
-  Chances c;
-  set_chances(scene.light_tree, guide, p, c);
-  return piece_pdf(scene, guide, c, place);
+float light_pdf(const Scene& scene, const Guide& guide, const Vec3& p, LightChances& chances, uint32_t place) {
+  const LightTree& tree = scene.light_tree;
+  const LightChances& c = know(tree, guide, p, chances);
+  if (tree.pieces.size() == 1) return c.asks;
+  if (!is_cut(c)) return c.asks * choice_pdf(tree, 0, c.at, place);
+  const LearnedLights& v = guide.fields->lights;
+  const uint32_t entry = entry_of(v, *c.cut, place);
+  const float chance = c.of[entry - c.cut->first];
+  return chance > 0 ? c.asks * (chance / c.total) * choice_pdf(tree, v.entries[entry].node, c.at, place) : 0;
 }
 
-bool sample_next_event(const Scene& scene, const Guide& guide, const Vec3& p, float u_choice, const Vec2& u_point,
-                       DirectSample& out) {
+bool sample_next_event(const Scene& scene, const Guide& guide, const Vec3& p, LightChances& chances,
+                       const LightNumbers& u, DirectSample& out) {
   out.point.place = none;
   if (const LightCut* cut = cut_of(guide); is_plain(scene, cut))
-    return sample_plain(scene, guide, cut, p, u_choice, u_point, out);
-  Chances c;
-  set_chances(scene.light_tree, guide, p, c);
+    return sample_plain(scene, guide, cut, p, u.choice, u.point, out);
   uint32_t place;
   float pick;
-  const bool chosen = choose_piece(scene, guide, c, u_choice, place, pick);
-  const bool found = chosen && sample_direct(scene, scene.light_tree.pieces[place], p, u_point, out);
+  const bool chosen = choose_light(scene, guide, p, chances, u.choice, place, pick);
+  const bool found = chosen && sample_direct(scene, scene.light_tree.pieces[place], p, u.point, out);
   out.point.place = place;
   if (!found) return false;
   if (!is_tile(scene, scene.light_tree.pieces[place])) {
@@ -154,7 +148,8 @@ bool sample_next_event(const Scene& scene, const Guide& guide, const Vec3& p, fl
   const int n = densities_direct(scene, out.point, p, out.wi, tiles);
   double sum = 0;
   for (int i = 0; i < n; ++i)
-    sum += double(tiles[i].pdf) * double(tiles[i].place == place ? pick : piece_pdf(scene, guide, c, tiles[i].place));
+    sum += double(tiles[i].pdf) *
+           double(tiles[i].place == place ? pick : light_pdf(scene, guide, p, chances, tiles[i].place));
   out.pdf = float(sum);
   return out.pdf > 0;
 }
@@ -163,14 +158,13 @@ double pdf_next_event(const Scene& scene, const Guide& guide, const Vec3& p, con
   if (const LightCut* cut = cut_of(guide); is_plain(scene, cut)) return pdf_plain(scene, guide, cut, p, point, wi);
   PieceDensity found[most_shares];
   const int n = densities_direct(scene, point, p, wi, found);
-  Chances c;
-  if (n > 0) set_chances(scene.light_tree, guide, p, c);
+  LightChances chances;
   double sum = 0;
-  for (int i = 0; i < n; ++i) sum += double(found[i].pdf) * double(piece_pdf(scene, guide, c, found[i].place));
+  for (int i = 0; i < n; ++i) sum += double(found[i].pdf) * double(light_pdf(scene, guide, p, chances, found[i].place));
   return sum;
 }
 
-void record_next_event(const Scene& scene, const Guide& guide, const Vec3& p, Training& training,
+void record_next_event(const Scene& scene, const Guide& guide, const Vec3& p, LightChances& chances, Training& training,
                        const LightPoint& point, float arrives) {
   const LightCut* cut = cut_of(guide);
   if (!cut) return;
@@ -182,8 +176,7 @@ void record_next_event(const Scene& scene, const Guide& guide, const Vec3& p, Tr
   const uint32_t entry = entry_of(v, *cut, place);
   float brought = 0;
   if (arrives > 0) {
-    Chances c;
-    set_chances(tree, guide, p, c);
+    const LightChances& c = know(tree, guide, p, chances);
     const uint32_t node = v.entries[entry].node;
     const float promise = importance(tree, node, c.at);
     float over = is_cut(c) ? v.entries[entry].weight / c.total : 1 / promise;  // its chance over what it promises

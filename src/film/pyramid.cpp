@@ -2,8 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <filesystem>
-#include <regex>
+#include <string_view>
 
 namespace ajar {
 namespace {
@@ -31,8 +32,10 @@ void clear_layers(const std::string& folder) {
 }  // namespace
 
 bool is_layer(const std::string& name) {
-  static const std::regex pattern("[sm][0-9]+t[0-9]+(-raw)?\\.exr");
-  return std::regex_match(name, pattern);
+  int end = 0;
+  if (std::sscanf(name.c_str(), "%*1[sm]%*[0-9]t%*[0-9]%n", &end) != 0) return false;
+  const std::string_view rest = std::string_view(name).substr(size_t(end));
+  return end > 0 && (rest == ".exr" || rest == "-raw.exr");
 }
 
 void merge(Pyramid& pyramid, const Film& film, const std::vector<std::vector<Strategy>>& chunks) {

@@ -47,11 +47,11 @@ bool join_escape(const Scene& scene, const Fields* fields, uint32_t light, const
   return true;
 }
 
-bool join_light(const Scene& scene, const Fields* fields, Sampler& sampler, const Subpath& camera, int t,
-                double light_paths, Candidate& out) {
+bool join_light(const Scene& scene, const Fields* fields, const Subpath& camera, int t, LightChances& chances,
+                const LightNumbers& u, double light_paths, Candidate& out) {
   const Vertex& c = camera[t - 1];
   DirectSample d;
-  const bool found = choose_light_point(scene, c.guide, c.p, sampler, d);
+  const bool found = sample_next_event(scene, c.guide, c.p, chances, u, d);
   out.point = d.point;
   if (!found) return false;
   const GuideEval e = evaluate_bsdf(c.guide, d.wi, Mode::radiance);

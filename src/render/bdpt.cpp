@@ -86,8 +86,8 @@ void teach_direct(const Work& work, Vertex& v, float received) {
 }
 
 // Which light the vertex asked for, and what it got from it: nothing where something is in the way.
-void teach_light(const Work& work, const Vertex& v, const LightPoint& point, float arrives) {
-  record_next_event(*work.job.scene, v.guide, v.p, *work.job.training, point, arrives);
+void teach_light(const Work& work, const Vertex& v, LightChances& chances, const LightPoint& point, float arrives) {
+  record_next_event(*work.job.scene, v.guide, v.p, chances, *work.job.training, point, arrives);
   charge(work.scratch, work.scratch.ledger->learn_ticks);
 }
 
@@ -174,23 +174,23 @@ void join_next_event(Work& work, float worth) {
   const int t = camera.n;
   Vertex& v = camera[t - 1];
   if (!job.next_event || job.scene->lights.empty()) return;
-  const int count = next_events(work, v, worth);
-  Sampler& first = work.sample.sampler;
-  Sampler others = count > 1 ? first.aside() : first;
+  LightNumbers first;
+  const int count = draw_light(*job.scene, v.guide, v.p, work.sample.sampler, first) ? next_events(work, v, worth) : 0;
+  LightChances chances;
   float received = 0;
   for (int i = 0; i < count; ++i) {
     Candidate c;
-    const bool found =
-        join_light(*job.scene, job.walk.fields, i == 0 ? first : others, camera, t, job.walk.light_paths, c);
+    const LightNumbers u = spread(first, i, count);
+    const bool found = join_light(*job.scene, job.walk.fields, camera, t, chances, u, job.walk.light_paths, c);
     c.value /= float(count);
     const bool lit = found && add_if_visible(work, c, 1, t);
     charge_join(work.scratch, 1, t);
     if (!work.sample.teaches) continue;
     if (lit) received += luminance(c.arrives) * share_of_next_event(work, c);
-    teach_light(work, v, c.point, lit ? max_component(c.arrives) : 0);
+    teach_light(work, v, chances, c.point, lit ? max_component(c.arrives) : 0);
   }
   if (!work.sample.teaches) return;
-  teach_direct(work, v, received / float(count));
+  teach_direct(work, v, count > 0 ? received / float(count) : 0);
   if (!job.guided) record_place(v.guide, v.ng, *job.training, work.scratch.sightings);
 }
 

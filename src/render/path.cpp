@@ -34,13 +34,16 @@ Rgb hit_sky(const Scene& scene, Heuristic h, const Guide& before, const Vec3& fr
 Rgb direct(const Job& job, const Guide& guide, const Surface& at, Sampler& sampler, int t, bool teaches,
            Scratch& scratch) {
   DirectSample d;
+  LightChances chances;
+  LightNumbers u;
   const auto learn = [&](float arrives) {
     if (!teaches) return;
-    record_next_event(*job.scene, guide, at.p, *job.training, d.point, arrives);
+    record_next_event(*job.scene, guide, at.p, chances, *job.training, d.point, arrives);
     record_place(guide, at.ng, *job.training, scratch.sightings);
     charge(scratch, scratch.ledger->learn_ticks);
   };
-  const bool found = choose_light_point(*job.scene, guide, at.p, sampler, d);
+  const bool found =
+      draw_light(*job.scene, guide, at.p, sampler, u) && sample_next_event(*job.scene, guide, at.p, chances, u, d);
   const GuideEval e = found ? evaluate(guide, d.wi, Mode::radiance) : GuideEval{};
   if (is_black(e.f_cos)) {
     learn(0);

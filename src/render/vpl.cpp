@@ -105,10 +105,13 @@ void join_lights(Gathering& work, const Surface& surface) {
 void join_next_event(Gathering& work) {
   const Job& job = work.job;
   const Subpath& camera = work.scratch.camera;
+  const Vertex& v = camera[camera.n - 1];
   Candidate c;
+  LightChances chances;
+  LightNumbers u;
   if (job.scene->lights.empty()) return;
-  if (join_light(*job.scene, job.walk.fields, work.sample.sampler, camera, camera.n, 0, c) &&
-      is_free(work, c, 1, camera.n))
+  if (draw_light(*job.scene, v.guide, v.p, work.sample.sampler, u) &&
+      join_light(*job.scene, job.walk.fields, camera, camera.n, chances, u, 0, c) && is_free(work, c, 1, camera.n))
     add(work, c, weigh(work, c), 1, camera.n);
   charge_join(work.scratch, 1, camera.n);
 }

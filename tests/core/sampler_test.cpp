@@ -42,23 +42,6 @@ TEST(Sampler, EveryPairIsANet) {
     }
 }
 
-// What is drawn aside is a sequence too, and leaves all that follows its dimensions.
-TEST(Sampler, NumbersAsideAreNetsOfTheirOwn) {
-  std::vector<Vec2> aside[2], after;
-  for (uint32_t i = 0; i < 256; ++i) {
-    Sampler s = at(7, 2 * i, 3);
-    Sampler others = s.aside();
-    for (uint32_t k = 0; k < i % 4; ++k) others.next2();  // now more, now fewer
-    aside[0].push_back(at(7, 2 * i, 3).aside().next2());
-    aside[1].push_back(at(7, 2 * i, 4).aside().next2());
-    after.push_back(s.next2());
-    EXPECT_EQ(after.back(), at(7, 2 * i, 3).next2());
-  }
-  EXPECT_TRUE(is_net(aside[0]) && is_net(aside[1]));
-  EXPECT_NE(aside[0], aside[1]) << "other vertices, other numbers";
-  EXPECT_NE(aside[0], after);
-}
-
 TEST(Sampler, EveryPathSeedAndSideHasItsOwnNumbers) {
   std::vector<Vec2> seen;
   for (uint64_t seed = 0; seed < 3; ++seed)

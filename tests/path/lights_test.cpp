@@ -48,8 +48,9 @@ TEST(LearnedLights, ChoiceAddsUpAndDrawsWhatItSays) {
       const LightCut* cut = v.guide.cell == none ? nullptr : &t.fields.lights.cuts[v.guide.cell];
       ++vertices, learned += cut && cut->count > 1;
       std::vector<double> p(n);
+      LightChances chances;
       double sum = 0;
-      for (uint32_t k = 0; k < n; ++k) sum += p[k] = double(light_pdf(t.scene, v.guide, v.p, k));
+      for (uint32_t k = 0; k < n; ++k) sum += p[k] = double(light_pdf(t.scene, v.guide, v.p, chances, k));
       ASSERT_LT(sum, 1 + 1e-4);
       if (!(importance(t.scene.light_tree, 0, {v.p, v.guide.frame.n}) > 0) || sum == 0) return;  // above all lamps
       ASSERT_GT(sum, 0.5 * double(cut ? cut->asks : 1));
@@ -58,7 +59,7 @@ TEST(LearnedLights, ChoiceAddsUpAndDrawsWhatItSays) {
       for (int i = 0; i < draws; ++i) {
         uint32_t place;
         float pdf;
-        if (!choose_light(t.scene, v.guide, v.p, (float(i) + 0.5f) / draws, place, pdf)) continue;
+        if (!choose_light(t.scene, v.guide, v.p, chances, (float(i) + 0.5f) / draws, place, pdf)) continue;
         ASSERT_NEAR(double(pdf) / p[place], 1, 1e-3);
         ++drawn[place];
       }
@@ -90,6 +91,31 @@ TEST(LearnedLights, ACellThatNothingShinesAtHasShares) {
   EXPECT_EQ(share_of(v, v.cuts[0], 1), 0.5f);
 }
 
+// Whatever the first ray's numbers are, the choice goes round the lights in even steps; and each ray's numbers are as
+// uniform as the first's.
+TEST(LearnedLights, RaysOfAVertexAreUniformAndEven) {
+  for (const int n : {1, 2, 5, 16}) {
+    std::vector<Vec3> mean(size_t(n), Vec3(0));
+    constexpr uint32_t vertices = 4096;
+    for (uint32_t k = 0; k < vertices; ++k) {
+      const Sampler sampler{1, reverse_bits(k)};
+      const LightNumbers first{sampler.at(1).x, sampler.at(2)};
+      std::vector<float> choices;
+      for (int i = 0; i < n; ++i) {
+        const LightNumbers u = spread(first, i, n);
+        const Vec3 at(u.choice, u.point);
+        for (int c = 0; c < 3; ++c) ASSERT_TRUE(at[c] >= 0 && at[c] < 1) << at[c];
+        mean[size_t(i)] += at / float(vertices);
+        choices.push_back(u.choice);
+      }
+      std::sort(choices.begin(), choices.end());
+      for (size_t i = 1; i < choices.size(); ++i) ASSERT_NEAR(choices[i] - choices[i - 1], 1 / float(n), 1e-5f);
+    }
+    for (const Vec3& m : mean)
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(m[c], 0.5f, 0.01f) << n;
+  }
+}
+
 // Cells in one half give the lamps of the other half less than the tree would.
 TEST(LearnedLights, LampsBehindAWallAreRare) {
   const Lit t(divided_room(), 8, 8000);
@@ -101,11 +127,12 @@ TEST(LearnedLights, LampsBehindAWallAreRare) {
     for (uint32_t i = 0; i < cut.count; ++i) hits += t.fields.lights.evidence[cut.first + i].hits;
     if (cut.count < 2 || hits < 30) return;  // it cannot know
     const Receiver at{v.p, v.guide.frame.n};
+    LightChances chances;
     for (uint32_t k = 0; k < t.scene.light_tree.pieces.size(); ++k) {
       const Light& light = t.scene.lights[t.scene.light_tree.pieces[k].light];
       const float x = t.scene.meshes[t.scene.shapes[light.shape].mesh].positions[0].x;
       if ((x < 0.1f) == (v.p.x < 0.1f)) continue;
-      learned += double(light_pdf(t.scene, v.guide, v.p, k));
+      learned += double(light_pdf(t.scene, v.guide, v.p, chances, k));
       bare += double(choice_pdf(t.scene.light_tree, 0, at, k));
     }
   });
@@ -156,8 +183,9 @@ TEST(LearnedLights, SkyIsDrawnAsItsCellSays) {
       };
       const auto r = kit::chi_square_sphere(
           [&](const Vec2& u, float extra) -> std::optional<Vec3> {
+            LightChances chances;
             DirectSample d;
-            if (!sample_next_event(t.scene, v.guide, v.p, extra, u, d)) return std::nullopt;
+            if (!sample_next_event(t.scene, v.guide, v.p, chances, {extra, u}, d)) return std::nullopt;
             off += std::abs(density(d.wi) / double(d.pdf) - 1) > 1e-2;
             return d.wi;
           },

@@ -30,8 +30,11 @@ inline void trace_subpath(const Scene& scene, const Accel& accel, const WalkOpti
     const Vertex& v = out[out.n - 1];
     if (side == Side::camera && training && connectable(v.guide)) {
       Sampler other = make_sampler(SamplerKind::independent, 5, side, path, pass * 64 + uint32_t(out.n));
-      const bool lit = join_light(scene, options.fields, other, out, out.n, 1, c) && visible(accel, c.segment);
-      record_next_event(scene, v.guide, v.p, *training, c.point, lit ? max_component(c.arrives) : 0);
+      LightChances chances;
+      LightNumbers u;
+      const bool lit = draw_light(scene, v.guide, v.p, other, u) &&
+                       join_light(scene, options.fields, out, out.n, chances, u, 1, c) && visible(accel, c.segment);
+      record_next_event(scene, v.guide, v.p, chances, *training, c.point, lit ? max_component(c.arrives) : 0);
       c = {};
     }
     if (side == Side::camera && scene.shapes[surface.shape].light != none &&

@@ -184,10 +184,12 @@ void compare_all(const Tracer& tracer, Traced& light, Traced& camera, const Vec2
       tally.compare(scene, c, path, 0);
     }
     if (!connectable(last.guide)) continue;
-    Sampler same = sampler;
-    if (join_light(scene, tally.fields, sampler, camera.path, t, n, c)) {
+    LightChances chances;
+    LightNumbers u;
+    if (draw_light(scene, last.guide, last.p, sampler, u) &&
+        join_light(scene, tally.fields, camera.path, t, chances, u, n, c)) {
       DirectSample d;
-      ASSERT_TRUE(choose_light_point(scene, last.guide, last.p, same, d));
+      ASSERT_TRUE(sample_next_event(scene, last.guide, last.p, chances, u, d));
       tally.compare(scene, c, lit(d.point, d.wi, camera, t, false), 1);
     }
     for (int s = 2; s <= light.path.n; ++s)

@@ -63,9 +63,6 @@ struct Sampler {
   Vec2 next2() { return at(skip()); }
   float next1() { return next2().x; }
   uint32_t skip() { return ++pair; }
-  /// The path's numbers for what is drawn now once, now several times, in dimensions of their own: those of all that
-  /// follows stay the same from pass to pass, as a sequence needs.
-  Sampler aside() const { return {hash(key, pair), index, 0, kind}; }
   Vec2 at(uint32_t number) const {
     const uint64_t stream = key + 0x9e3779b97f4a7c15ull * number;
     if (kind == SamplerKind::independent) {

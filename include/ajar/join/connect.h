@@ -38,9 +38,10 @@ bool join_hit(const Scene& scene, const Fields* fields, const Subpath& camera, c
 /// s = 0: the camera subpath left the scene in the walk's direction; one infinite light.
 bool join_escape(const Scene& scene, const Fields* fields, uint32_t light, const Subpath& camera, const Walk& walk,
                  Candidate& out);
-/// s = 1: next-event estimation at the camera subpath's vertex t - 1. light_paths as in WalkOptions, also below.
-bool join_light(const Scene& scene, const Fields* fields, Sampler& sampler, const Subpath& camera, int t,
-                double light_paths, Candidate& out);
+/// s = 1: next-event estimation at the camera subpath's vertex t - 1, whose chances these are. light_paths as in
+/// WalkOptions, also below.
+bool join_light(const Scene& scene, const Fields* fields, const Subpath& camera, int t, LightChances& chances,
+                const LightNumbers& u, double light_paths, Candidate& out);
 /// The last vertex of a light subpath, and what joins to it read of the rest.
 struct LightEnd {
   const Vertex* vertex = nullptr;

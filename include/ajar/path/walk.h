@@ -78,15 +78,14 @@ struct Walk {
   float promise = 0;        ///< what the fields expected the subpath to bring when it began; 0: they do not know
 };
 
-/// Next-event estimation's light and point of it, seen from p; the density includes the choice. False where it gives
-/// nothing. Takes two pairs of numbers, of which a single light uses one.
-inline bool choose_light_point(const Scene& scene, const Guide& guide, const Vec3& p, Sampler& sampler,
-                               DirectSample& out) {
+/// Numbers of next-event estimation: takes two pairs, of which a single light uses one. False where the light cannot be
+/// seen from there.
+inline bool draw_light(const Scene& scene, const Guide& guide, const Vec3& p, Sampler& sampler, LightNumbers& u) {
   const uint32_t choice = sampler.skip(), point = sampler.skip();
-  out.point.place = none;
   if (guide.bsdf.opaque && scene.lights.size() == 1 && !may_light(scene, 0, p, guide.frame.n)) return false;
-  const float u = chooses_light(scene, guide) ? sampler.at(choice).x : 0;
-  return sample_next_event(scene, guide, p, u, sampler.at(point), out);
+  u.choice = chooses_light(scene, guide) ? sampler.at(choice).x : 0;
+  u.point = sampler.at(point);
+  return true;
 }
 
 /// The largest probability of going on that roulette knows. A constant c would give paths through surfaces of albedo
