@@ -19,8 +19,9 @@ constexpr double exposed = 0.2;                       // mean luminance of the i
 constexpr double dark = 0.01;                         // of relMSE
 constexpr double least_miss = 0.1;                    // of a square's light
 constexpr double fastest = 16;                        // of path tracing: passes for one of the guided integrator
-// Of the guided integrator's error after equal time: path tracing takes over; before, while fields are young.
-constexpr double far_better = 0.85, better = 1;
+// Below 1 - young / passes of the guided integrator's error after equal time path tracing takes over: what guides errs
+// less and less per pass, as fields learn.
+constexpr double young = 3;
 // It is not looked at again: after so many passes, before, or at once.
 constexpr double worse = 1.4, much_worse = 2, hopeless = 8;
 constexpr uint32_t settling = 16;
@@ -142,7 +143,7 @@ void decide(double error, double deviation, double guided, double samples, uint3
   plain.passes = passes, plain.pace = samples / passes;
   plain.guided_error = guided * passes, plain.plain_error = error * samples;
   plain.ratio = guided > 0 ? most / guided : 0;
-  plain.taken = plain.ratio > 0 && plain.ratio < (passes < settling ? far_better : better) && most * samples < tame;
+  plain.taken = plain.ratio > 0 && plain.ratio < 1 - young / passes && most * samples < tame;
   plain.settled = plain.taken || passes == last_look || least > too_much * guided || least * samples > wild;
 }
 
