@@ -6,7 +6,7 @@ namespace {
 // What light passes through is lit from both sides, whoever looks: the choice must not depend on the viewer's side.
 bool one_sided(const Guide& g) { return g.bsdf.opaque; }
 
-Receiver receiver_at(const Guide& g, const Vec3& p) { return {p, one_sided(g) ? g.frame.n : Vec3(0)}; }
+Receiver receiver_at(const Guide& g) { return {g.p, one_sided(g) ? g.frame.n : Vec3(0)}; }
 
 // The cell's cut; null where none was learned.
 const LightCut* cut_of(const Guide& g) {
@@ -21,11 +21,11 @@ bool is_plain(const Scene& scene, const LightCut* cut) {
 
 bool is_cut(const LightChances& c) { return c.cut && c.cut->count > 1; }
 
-const LightChances& know(const LightTree& tree, const Guide& guide, const Vec3& p, LightChances& c) {
+const LightChances& know(const LightTree& tree, const Guide& guide, LightChances& c) {
   if (c.known) return c;
   c.known = true;
   c.cut = cut_of(guide);
-  c.at = receiver_at(guide, p);
+  c.at = receiver_at(guide);
   c.asks = c.cut ? c.cut->asks : 1;
   c.total = 0;
   if (!is_cut(c)) return c;
@@ -59,21 +59,20 @@ uint32_t draw(const LightChances& c, float& u) {
 }
 
 // A light of the sky as a whole, by power. Which piece that would have been is left open.
-bool sample_plain(const Scene& scene, const Guide& guide, const LightCut* cut, const Vec3& p, float u,
-                  const Vec2& u_point, DirectSample& out) {
+bool sample_plain(const Scene& scene, const Guide& guide, const LightCut* cut, float u, const Vec2& u_point,
+                  DirectSample& out) {
   const float asks = cut ? cut->asks : 1;
   if (!is_asked(asks, u)) return false;
   float pick;
-  const SkyLight& light = choose_of_sky(scene.light_tree, receiver_at(guide, p), u, pick);
-  if (!sample_direct(scene, light.light, p, u_point, out)) return false;
+  const SkyLight& light = choose_of_sky(scene.light_tree, receiver_at(guide), u, pick);
+  if (!sample_direct(scene, light.light, guide.p, u_point, out)) return false;
   out.pdf *= pick * asks;
   return out.pdf > 0;
 }
 
-double pdf_plain(const Scene& scene, const Guide& guide, const LightCut* cut, const Vec3& p, const LightPoint& point,
-                 const Vec3& wi) {
-  const float pick = sky_pdf(scene.light_tree, receiver_at(guide, p), point.light);
-  const double pdf = point.delta_direction ? 1 : double(pdf_direct(scene, point, p, wi));
+double pdf_plain(const Scene& scene, const Guide& guide, const LightCut* cut, const LightPoint& point, const Vec3& wi) {
+  const float pick = sky_pdf(scene.light_tree, receiver_at(guide), point.light);
+  const double pdf = point.delta_direction ? 1 : double(pdf_direct(scene, point, guide.p, wi));
   return pdf * double(pick) * (cut ? double(cut->asks) : 1);
 }
 
@@ -94,10 +93,9 @@ bool chooses_light(const Scene& scene, const Guide& guide) {
   return !one || (cut && cut->asks < 1);
 }
 
-bool choose_light(const Scene& scene, const Guide& guide, const Vec3& p, LightChances& chances, float u,
-                  uint32_t& place, float& pdf) {
+bool choose_light(const Scene& scene, const Guide& guide, LightChances& chances, float u, uint32_t& place, float& pdf) {
   const LightTree& tree = scene.light_tree;
-  const LightChances& c = know(tree, guide, p, chances);
+  const LightChances& c = know(tree, guide, chances);
   place = none, pdf = c.asks;
   if (tree.nodes.empty() || !is_asked(c.asks, u)) return false;
   if (tree.pieces.size() == 1) {
@@ -118,9 +116,9 @@ bool choose_light(const Scene& scene, const Guide& guide, const Vec3& p, LightCh
   return pdf > 0;
 }
 
-float light_pdf(const Scene& scene, const Guide& guide, const Vec3& p, LightChances& chances, uint32_t place) {
+float light_pdf(const Scene& scene, const Guide& guide, LightChances& chances, uint32_t place) {
   const LightTree& tree = scene.light_tree;
-  const LightChances& c = know(tree, guide, p, chances);
+  const LightChances& c = know(tree, guide, chances);
   if (tree.pieces.size() == 1) return c.asks;
   if (!is_cut(c)) return c.asks * choice_pdf(tree, 0, c.at, place);
   const LearnedLights& v = guide.fields->lights;
@@ -129,15 +127,15 @@ float light_pdf(const Scene& scene, const Guide& guide, const Vec3& p, LightChan
   return chance > 0 ? c.asks * (chance / c.total) * choice_pdf(tree, v.entries[entry].node, c.at, place) : 0;
 }
 
-bool sample_next_event(const Scene& scene, const Guide& guide, const Vec3& p, LightChances& chances,
-                       const LightNumbers& u, DirectSample& out) {
+bool sample_next_event(const Scene& scene, const Guide& guide, LightChances& chances, const LightNumbers& u,
+                       DirectSample& out) {
   out.point.place = none;
   if (const LightCut* cut = cut_of(guide); is_plain(scene, cut))
-    return sample_plain(scene, guide, cut, p, u.choice, u.point, out);
+    return sample_plain(scene, guide, cut, u.choice, u.point, out);
   uint32_t place;
   float pick;
-  const bool chosen = choose_light(scene, guide, p, chances, u.choice, place, pick);
-  const bool found = chosen && sample_direct(scene, scene.light_tree.pieces[place], p, u.point, out);
+  const bool chosen = choose_light(scene, guide, chances, u.choice, place, pick);
+  const bool found = chosen && sample_direct(scene, scene.light_tree.pieces[place], guide.p, u.point, out);
   out.point.place = place;
   if (!found) return false;
   if (!is_tile(scene, scene.light_tree.pieces[place])) {
@@ -145,26 +143,26 @@ bool sample_next_event(const Scene& scene, const Guide& guide, const Vec3& p, Li
     return out.pdf > 0;
   }
   PieceDensity tiles[most_shares];  // others may reach here
-  const int n = densities_direct(scene, out.point, p, out.wi, tiles);
+  const int n = densities_direct(scene, out.point, guide.p, out.wi, tiles);
   double sum = 0;
   for (int i = 0; i < n; ++i)
     sum += double(tiles[i].pdf) *
-           double(tiles[i].place == place ? pick : light_pdf(scene, guide, p, chances, tiles[i].place));
+           double(tiles[i].place == place ? pick : light_pdf(scene, guide, chances, tiles[i].place));
   out.pdf = float(sum);
   return out.pdf > 0;
 }
 
-double pdf_next_event(const Scene& scene, const Guide& guide, const Vec3& p, const LightPoint& point, const Vec3& wi) {
-  if (const LightCut* cut = cut_of(guide); is_plain(scene, cut)) return pdf_plain(scene, guide, cut, p, point, wi);
+double pdf_next_event(const Scene& scene, const Guide& guide, const LightPoint& point, const Vec3& wi) {
+  if (const LightCut* cut = cut_of(guide); is_plain(scene, cut)) return pdf_plain(scene, guide, cut, point, wi);
   PieceDensity found[most_shares];
-  const int n = densities_direct(scene, point, p, wi, found);
+  const int n = densities_direct(scene, point, guide.p, wi, found);
   LightChances chances;
   double sum = 0;
-  for (int i = 0; i < n; ++i) sum += double(found[i].pdf) * double(light_pdf(scene, guide, p, chances, found[i].place));
+  for (int i = 0; i < n; ++i) sum += double(found[i].pdf) * double(light_pdf(scene, guide, chances, found[i].place));
   return sum;
 }
 
-void record_next_event(const Scene& scene, const Guide& guide, const Vec3& p, LightChances& chances, Training& training,
+void record_next_event(const Scene& scene, const Guide& guide, LightChances& chances, Training& training,
                        const LightPoint& point, float arrives) {
   const LightCut* cut = cut_of(guide);
   if (!cut) return;
@@ -176,7 +174,7 @@ void record_next_event(const Scene& scene, const Guide& guide, const Vec3& p, Li
   const uint32_t entry = entry_of(v, *cut, place);
   float brought = 0;
   if (arrives > 0) {
-    const LightChances& c = know(tree, guide, p, chances);
+    const LightChances& c = know(tree, guide, chances);
     const uint32_t node = v.entries[entry].node;
     const float promise = importance(tree, node, c.at);
     float over = is_cut(c) ? v.entries[entry].weight / c.total : 1 / promise;  // its chance over what it promises

@@ -51,7 +51,7 @@ bool join_light(const Scene& scene, const Fields* fields, const Subpath& camera,
                 const LightNumbers& u, double light_paths, Candidate& out) {
   const Vertex& c = camera[t - 1];
   DirectSample d;
-  const bool found = sample_next_event(scene, c.guide, c.p, chances, u, d);
+  const bool found = sample_next_event(scene, c.guide, chances, u, d);
   out.point = d.point;
   if (!found) return false;
   const GuideEval e = evaluate_bsdf(c.guide, d.wi, Mode::radiance);

@@ -84,9 +84,9 @@ double direct_share(const Scene& scene, const Vertex& x, const LightPoint& point
   if (x.guide.blocked) {
     Guide flat = x.guide;
     flat.frame.n = flat.ng;
-    direct = pdf_next_event(scene, flat, x.p, point, wi);
+    direct = pdf_next_event(scene, flat, point, wi);
   } else {
-    direct = pdf_next_event(scene, x.guide, x.p, point, wi);
+    direct = pdf_next_event(scene, x.guide, point, wi);
   }
   if (point.infinite) return ratio(direct, emission.direction);
   if (point.delta_position) return ratio(direct, emission.position);

@@ -87,7 +87,7 @@ void teach_direct(const Work& work, Vertex& v, float received) {
 
 // Which light the vertex asked for, and what it got from it: nothing where something is in the way.
 void teach_light(const Work& work, const Vertex& v, LightChances& chances, const LightPoint& point, float arrives) {
-  record_next_event(*work.job.scene, v.guide, v.p, chances, *work.job.training, point, arrives);
+  record_next_event(*work.job.scene, v.guide, chances, *work.job.training, point, arrives);
   charge(work.scratch, work.scratch.ledger->learn_ticks);
 }
 
@@ -175,7 +175,7 @@ void join_next_event(Work& work, float worth) {
   Vertex& v = camera[t - 1];
   if (!job.next_event || job.scene->lights.empty()) return;
   LightNumbers first;
-  const int count = draw_light(*job.scene, v.guide, v.p, work.sample.sampler, first) ? next_events(work, v, worth) : 0;
+  const int count = draw_light(*job.scene, v.guide, work.sample.sampler, first) ? next_events(work, v, worth) : 0;
   LightChances chances;
   float received = 0;
   for (int i = 0; i < count; ++i) {
@@ -190,7 +190,7 @@ void join_next_event(Work& work, float worth) {
     teach_light(work, v, chances, c.point, lit ? max_component(c.arrives) : 0);
   }
   if (!work.sample.teaches) return;
-  teach_direct(work, v, count > 0 ? received / float(count) : 0);
+  teach_direct(work, v, received / float(std::max(count, 1)));
   if (!job.guided) record_place(v.guide, v.ng, *job.training, work.scratch.sightings);
 }
 

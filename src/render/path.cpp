@@ -9,22 +9,21 @@ namespace {
 float hit_weight(Heuristic h, double own, double other) { return float(1 / (1 + raise(h, ratio(other, own)))); }
 
 // Light that the path ran into: s = 0.
-Rgb hit_light(const Scene& scene, Heuristic h, const Guide& before, const Surface& at, const Vec3& from, const Vec3& d,
-              double pdf, bool alone) {
+Rgb hit_light(const Scene& scene, Heuristic h, const Guide& before, const Surface& at, const Vec3& d, double pdf,
+              bool alone) {
   const LightPoint point = light_point(scene, at);
   if (point.light == none) return Rgb(0);
   const Rgb radiance = emitted(scene, at, -d);
   if (alone || is_black(radiance)) return radiance;
-  return radiance * hit_weight(h, pdf, pdf_next_event(scene, before, from, point, d));
+  return radiance * hit_weight(h, pdf, pdf_next_event(scene, before, point, d));
 }
 
-Rgb hit_sky(const Scene& scene, Heuristic h, const Guide& before, const Vec3& from, const Vec3& d, double pdf,
-            bool alone) {
+Rgb hit_sky(const Scene& scene, Heuristic h, const Guide& before, const Vec3& d, double pdf, bool alone) {
   Rgb sum(0);
   for (const uint32_t light : scene.infinite_lights) {
     const Rgb radiance = environment(scene, light, d);
     if (is_black(radiance)) continue;
-    const double other = alone ? 0 : pdf_next_event(scene, before, from, light_point(scene, light, d), d);
+    const double other = alone ? 0 : pdf_next_event(scene, before, light_point(scene, light, d), d);
     sum += radiance * hit_weight(h, pdf, other);
   }
   return sum;
@@ -38,12 +37,11 @@ Rgb direct(const Job& job, const Guide& guide, const Surface& at, Sampler& sampl
   LightNumbers u;
   const auto learn = [&](float arrives) {
     if (!teaches) return;
-    record_next_event(*job.scene, guide, at.p, chances, *job.training, d.point, arrives);
+    record_next_event(*job.scene, guide, chances, *job.training, d.point, arrives);
     record_place(guide, at.ng, *job.training, scratch.sightings);
     charge(scratch, scratch.ledger->learn_ticks);
   };
-  const bool found =
-      draw_light(*job.scene, guide, at.p, sampler, u) && sample_next_event(*job.scene, guide, at.p, chances, u, d);
+  const bool found = draw_light(*job.scene, guide, sampler, u) && sample_next_event(*job.scene, guide, chances, u, d);
   const GuideEval e = found ? evaluate(guide, d.wi, Mode::radiance) : GuideEval{};
   if (is_black(e.f_cos)) {
     learn(0);
@@ -64,7 +62,6 @@ Rgb direct(const Job& job, const Guide& guide, const Surface& at, Sampler& sampl
 struct Flight {
   Vec3 o{0}, d{0};
   float t_min = 0, t_max = infinity;
-  Vec3 from{0};       // where it left a surface
   double pdf = 1;     // of its direction, per solid angle
   bool alone = true;  // next-event estimation could not have found its end
   Rgb beta{1}, survival{1};
@@ -87,7 +84,6 @@ bool scatter(const Job& job, const Guide& guide, const Surface& at, int edges, S
     return false;
   f.o = offset(at.p, at.ng, at.error, s.wi), f.d = s.wi;
   f.t_min = 0, f.t_max = infinity;
-  f.from = at.p;
   f.pdf = s.pdf;
   f.alone = s.delta || !job.next_event;
   return true;
@@ -99,7 +95,7 @@ void trace_path(const Job& job, Sample& sample, Scratch& scratch) {
   const Scene& scene = *job.scene;
   const Heuristic h = job.walk.heuristic;
   const CameraRay ray = generate(scene.camera, sample.raster, sample.lens);
-  Flight f{ray.o, ray.d, ray.t_min, ray.t_max, ray.o};
+  Flight f{ray.o, ray.d, ray.t_min, ray.t_max};
   Guide guide;
   for (int edges = 1;; ++edges) {
     Hit hit;
@@ -109,12 +105,12 @@ void trace_path(const Job& job, Sample& sample, Scratch& scratch) {
     charge(scratch, scratch.ledger->camera_ticks);
     if (!hits) {
       if (!scene.infinite_lights.empty())
-        add(sample, scratch, 0, t, f.beta * hit_sky(scene, h, guide, f.from, f.d, f.pdf, f.alone));
+        add(sample, scratch, 0, t, f.beta * hit_sky(scene, h, guide, f.d, f.pdf, f.alone));
       return;
     }
     const Surface at = make_surface(scene, hit, f.o, f.d);
     if (scene.shapes[hit.shape].light != none)
-      add(sample, scratch, 0, t, f.beta * hit_light(scene, h, guide, at, f.from, f.d, f.pdf, f.alone));
+      add(sample, scratch, 0, t, f.beta * hit_light(scene, h, guide, at, f.d, f.pdf, f.alone));
     if (edges >= job.walk.max_edges) return;
     make_guide(scene, job.walk.fields, Side::camera, at, -f.d, guide);
     charge(scratch, scratch.ledger->camera_ticks);

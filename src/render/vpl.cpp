@@ -110,7 +110,7 @@ void join_next_event(Gathering& work) {
   LightChances chances;
   LightNumbers u;
   if (job.scene->lights.empty()) return;
-  if (draw_light(*job.scene, v.guide, v.p, work.sample.sampler, u) &&
+  if (draw_light(*job.scene, v.guide, work.sample.sampler, u) &&
       join_light(*job.scene, job.walk.fields, camera, camera.n, chances, u, 0, c) && is_free(work, c, 1, camera.n))
     add(work, c, weigh(work, c), 1, camera.n);
   charge_join(work.scratch, 1, camera.n);

@@ -79,7 +79,7 @@ OraclePath densities_afresh(const Scene& scene, const WholePath& path, double li
   const Vec3 wi = towards(path, 1, 0);
   Guide guide;
   make_guide(scene, path.fields, Side::camera, path.points[1].surface, towards(path, 1, 2), guide);
-  const double direct = pdf_next_event(scene, guide, path.points[1].p, light, wi);
+  const double direct = pdf_next_event(scene, guide, light, wi);
   out.nee =
       light.infinite || light.delta_position ? direct : to_area(direct, path.points[0], wi, distance2(path, 0, 1));
   return out;

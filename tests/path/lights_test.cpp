@@ -50,7 +50,7 @@ TEST(LearnedLights, ChoiceAddsUpAndDrawsWhatItSays) {
       std::vector<double> p(n);
       LightChances chances;
       double sum = 0;
-      for (uint32_t k = 0; k < n; ++k) sum += p[k] = double(light_pdf(t.scene, v.guide, v.p, chances, k));
+      for (uint32_t k = 0; k < n; ++k) sum += p[k] = double(light_pdf(t.scene, v.guide, chances, k));
       ASSERT_LT(sum, 1 + 1e-4);
       if (!(importance(t.scene.light_tree, 0, {v.p, v.guide.frame.n}) > 0) || sum == 0) return;  // above all lamps
       ASSERT_GT(sum, 0.5 * double(cut ? cut->asks : 1));
@@ -59,7 +59,7 @@ TEST(LearnedLights, ChoiceAddsUpAndDrawsWhatItSays) {
       for (int i = 0; i < draws; ++i) {
         uint32_t place;
         float pdf;
-        if (!choose_light(t.scene, v.guide, v.p, chances, (float(i) + 0.5f) / draws, place, pdf)) continue;
+        if (!choose_light(t.scene, v.guide, chances, (float(i) + 0.5f) / draws, place, pdf)) continue;
         ASSERT_NEAR(double(pdf) / p[place], 1, 1e-3);
         ++drawn[place];
       }
@@ -132,7 +132,7 @@ TEST(LearnedLights, LampsBehindAWallAreRare) {
       const Light& light = t.scene.lights[t.scene.light_tree.pieces[k].light];
       const float x = t.scene.meshes[t.scene.shapes[light.shape].mesh].positions[0].x;
       if ((x < 0.1f) == (v.p.x < 0.1f)) continue;
-      learned += double(light_pdf(t.scene, v.guide, v.p, chances, k));
+      learned += double(light_pdf(t.scene, v.guide, chances, k));
       bare += double(choice_pdf(t.scene.light_tree, 0, at, k));
     }
   });
@@ -179,13 +179,13 @@ TEST(LearnedLights, SkyIsDrawnAsItsCellSays) {
       o.rows = 8, o.columns = 16, o.samples = 30'000, o.seed = 3 + plain;
       int off = 0;
       const auto density = [&](const Vec3& w) {
-        return pdf_next_event(t.scene, v.guide, v.p, light_point(t.scene, 0, w), w);
+        return pdf_next_event(t.scene, v.guide, light_point(t.scene, 0, w), w);
       };
       const auto r = kit::chi_square_sphere(
           [&](const Vec2& u, float extra) -> std::optional<Vec3> {
             LightChances chances;
             DirectSample d;
-            if (!sample_next_event(t.scene, v.guide, v.p, chances, {extra, u}, d)) return std::nullopt;
+            if (!sample_next_event(t.scene, v.guide, chances, {extra, u}, d)) return std::nullopt;
             off += std::abs(density(d.wi) / double(d.pdf) - 1) > 1e-2;
             return d.wi;
           },

@@ -32,9 +32,9 @@ inline void trace_subpath(const Scene& scene, const Accel& accel, const WalkOpti
       Sampler other = make_sampler(SamplerKind::independent, 5, side, path, pass * 64 + uint32_t(out.n));
       LightChances chances;
       LightNumbers u;
-      const bool lit = draw_light(scene, v.guide, v.p, other, u) &&
+      const bool lit = draw_light(scene, v.guide, other, u) &&
                        join_light(scene, options.fields, out, out.n, chances, u, 1, c) && visible(accel, c.segment);
-      record_next_event(scene, v.guide, v.p, chances, *training, c.point, lit ? max_component(c.arrives) : 0);
+      record_next_event(scene, v.guide, chances, *training, c.point, lit ? max_component(c.arrives) : 0);
       c = {};
     }
     if (side == Side::camera && scene.shapes[surface.shape].light != none &&

@@ -186,10 +186,10 @@ void compare_all(const Tracer& tracer, Traced& light, Traced& camera, const Vec2
     if (!connectable(last.guide)) continue;
     LightChances chances;
     LightNumbers u;
-    if (draw_light(scene, last.guide, last.p, sampler, u) &&
+    if (draw_light(scene, last.guide, sampler, u) &&
         join_light(scene, tally.fields, camera.path, t, chances, u, n, c)) {
       DirectSample d;
-      ASSERT_TRUE(sample_next_event(scene, last.guide, last.p, chances, u, d));
+      ASSERT_TRUE(sample_next_event(scene, last.guide, chances, u, d));
       tally.compare(scene, c, lit(d.point, d.wi, camera, t, false), 1);
     }
     for (int s = 2; s <= light.path.n; ++s)

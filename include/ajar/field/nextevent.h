@@ -18,12 +18,11 @@ struct LightChances {
   float of[LightRules{}.most];  ///< entries of the cut; set where there are several
 };
 
-/// Draws a piece of the lights for the vertex at p, where it does not take a sky whole; u in [0,1). False where none is
+/// Draws a piece of the lights for the vertex, where it does not take a sky whole; u in [0,1). False where none is
 /// to be asked for. place is set where one was chosen, though it turned out to be of no use, else none.
-bool choose_light(const Scene& scene, const Guide& guide, const Vec3& p, LightChances& chances, float u,
-                  uint32_t& place, float& pdf);
+bool choose_light(const Scene& scene, const Guide& guide, LightChances& chances, float u, uint32_t& place, float& pdf);
 /// Probability of a piece.
-float light_pdf(const Scene& scene, const Guide& guide, const Vec3& p, LightChances& chances, uint32_t place);
+float light_pdf(const Scene& scene, const Guide& guide, LightChances& chances, uint32_t place);
 /// Whether sample_next_event needs LightNumbers::choice.
 bool chooses_light(const Scene& scene, const Guide& guide);
 /// Numbers in [0,1).
@@ -35,13 +34,13 @@ struct LightNumbers {
 /// evenly in the cube. (J4)
 LightNumbers spread(const LightNumbers& first, int i, int n);
 /// A point of a light that the vertex may see; out.pdf includes the choice. False where it gives nothing.
-bool sample_next_event(const Scene& scene, const Guide& guide, const Vec3& p, LightChances& chances,
-                       const LightNumbers& u, DirectSample& out);
+bool sample_next_event(const Scene& scene, const Guide& guide, LightChances& chances, const LightNumbers& u,
+                       DirectSample& out);
 /// Density of the same for a point of a light along unit wi, per solid angle; of deltas the probability.
-double pdf_next_event(const Scene& scene, const Guide& guide, const Vec3& p, const LightPoint& point, const Vec3& wi);
+double pdf_next_event(const Scene& scene, const Guide& guide, const LightPoint& point, const Vec3& wi);
 /// What the vertex got from the point that sample_next_event gave it: irradiance divided by its density, 0 where
 /// something was in the way. Nothing is recorded where no light was asked.
-void record_next_event(const Scene& scene, const Guide& guide, const Vec3& p, LightChances& chances, Training& training,
+void record_next_event(const Scene& scene, const Guide& guide, LightChances& chances, Training& training,
                        const LightPoint& point, float arrives);
 /// The vertex was here: cells come to be, and divide, where there are many. ng: its geometric normal.
 void record_place(const Guide& guide, const Vec3& ng, Training& training, Sightings& sightings);

@@ -78,11 +78,11 @@ struct Walk {
   float promise = 0;        ///< what the fields expected the subpath to bring when it began; 0: they do not know
 };
 
-/// Numbers of next-event estimation: takes two pairs, of which a single light uses one. False where the light cannot be
-/// seen from there.
-inline bool draw_light(const Scene& scene, const Guide& guide, const Vec3& p, Sampler& sampler, LightNumbers& u) {
+/// Numbers of a vertex's next-event estimation: takes two pairs, of which a single light uses one. False where that
+/// light cannot be seen.
+inline bool draw_light(const Scene& scene, const Guide& guide, Sampler& sampler, LightNumbers& u) {
   const uint32_t choice = sampler.skip(), point = sampler.skip();
-  if (guide.bsdf.opaque && scene.lights.size() == 1 && !may_light(scene, 0, p, guide.frame.n)) return false;
+  if (guide.bsdf.opaque && scene.lights.size() == 1 && !may_light(scene, 0, guide.p, guide.frame.n)) return false;
   u.choice = chooses_light(scene, guide) ? sampler.at(choice).x : 0;
   u.point = sampler.at(point);
   return true;
