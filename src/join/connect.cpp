@@ -12,6 +12,18 @@ End end_at(std::span<const Vertex> subpath, double other, double reverse) {
   return {int(subpath.size()), v.own, other, before.own, reverse * v.back, delta, v.sum, v.merge, v.seen, before.seen};
 }
 
+// The camera's end on a light, n-th of its vertices, that a ray from the vertex before ran into.
+End end_on_light(int n, double own, double other, const Vertex& before, double other_before, double sum) {
+  return {n, own, other, before.own, other_before, before.delta, sum, 0, false, before.seen};
+}
+
+// Of strategies that find light from this vertex; first: Shares::light_first.
+Shares shares_from(const Vertex& v, double first, double light_paths) {
+  Shares shares{first, light_paths};
+  shares.next_events = v.next_events;
+  return shares;
+}
+
 }  // namespace
 
 bool join_hit(const Scene& scene, const Fields* fields, const Subpath& camera, const Surface& surface, Candidate& out) {
@@ -25,8 +37,9 @@ bool join_hit(const Scene& scene, const Fields* fields, const Subpath& camera, c
   const EmissionPdf emission = pdf_emission(scene, fields, point, v.guide.wo);
   const Vertex& before = camera[camera.n - 2];
   out.light = {};
-  out.camera = {camera.n, v.own, emission.position, before.own, emission.direction * v.back, before.delta, v.sum};
-  out.shares = {camera.n > 2 ? direct_share(scene, before, point, -v.guide.wo, v.distance2, emission) : 0, 1};
+  out.camera = end_on_light(camera.n, v.own, emission.position, before, emission.direction * v.back, v.sum);
+  const double first = camera.n > 2 ? direct_share(scene, before, point, -v.guide.wo, v.distance2, emission) : 0;
+  out.shares = shares_from(before, first, 1);
   return true;
 }
 
@@ -41,9 +54,8 @@ bool join_escape(const Scene& scene, const Fields* fields, uint32_t light, const
   const EmissionPdf emission = pdf_emission(scene, fields, point, -walk.d);
   const double cosine = std::abs(glm::dot(before.ng, walk.d));
   out.light = {};
-  out.camera = {camera.n + 1, walk.pdf, emission.direction, before.own, emission.position * cosine,
-                before.delta, walk.sum};
-  out.shares = {camera.n > 1 ? direct_share(scene, before, point, walk.d, 1, emission) : 0, 1};
+  out.camera = end_on_light(camera.n + 1, walk.pdf, emission.direction, before, emission.position * cosine, walk.sum);
+  out.shares = shares_from(before, camera.n > 1 ? direct_share(scene, before, point, walk.d, 1, emission) : 0, 1);
   return true;
 }
 
@@ -70,7 +82,7 @@ bool join_light(const Scene& scene, const Fields* fields, const Subpath& camera,
   out.light = {1, own, 0, 1, 0, false, hittable ? 1.0 : 0.0};
   out.light_found = {&c.guide, d.wi, e.pdf, cos_light, d2};
   out.camera = end_at(camera.first(t), to_here * cos_here / d2, e.pdf_reverse);
-  out.shares = {ratio(nee, own), light_paths};
+  out.shares = shares_from(c, ratio(nee, own), light_paths);
   out.segment = segment_to(d, c.p, c.ng, c.error);
   return true;
 }

@@ -22,10 +22,21 @@ double handed_over(Heuristic h, const End& end, double first, double inner, doub
   return last * extend(share, raise(h, ratio(end.other_before, end.own_before)), end.sum_before);        // (R3)
 }
 
+// Whether the lens sees the vertex of next-event estimation.
+bool sees_first(const End& light, const End& camera) {
+  return light.n == 0 ? camera.seen_before : light.n == 1 ? camera.seen : light.n == 2 && camera.n == 1;
+}
+
+// What s = 0 or s = 1, at hand, has of what they have both: by densities, where each ray to a light counts. (J11)
+double share_of_pair(double hit, double nee, double rays, bool hits) {
+  return (hits ? hit : rays * nee) / (hit + rays * nee) * (hit + nee);
+}
+
 }  // namespace
 
 double mis_weight(Heuristic h, const End& light, const End& camera, const Shares& shares) {
-  const double nee = raise(h, shares.light_first), film = raise(h, shares.camera_first);
+  const double first_seen = sees_first(light, camera) ? shares.first_seen : 1;
+  const double nee = raise(h, shares.light_first * first_seen), film = raise(h, shares.camera_first);
   // Everything relative to the product of ordinary densities with s vertices from emission and t from the camera. (R1)
   const bool both_walked = light.n > 1 && camera.n > 1;
   const double here =
@@ -34,16 +45,19 @@ double mis_weight(Heuristic h, const End& light, const End& camera, const Shares
   const bool seen = camera.n == 1;
   const double fewer_light = handed_over(h, light, nee, join_share(h, shares, seen), seen ? 1 : shares.merge_inner);
   // A strategy with t - 1 .. 1 camera vertices; s + 1 of light: next-event estimation where that is the first one.
-  double fewer_camera;
+  double fewer_camera, next_event = here;
   if (light.n == 0 && camera.n >= 2) {
     // s = 1 next: the connection of c_(t-2) to the light's point found afresh.
     const double last = raise(h, ratio(camera.other, camera.own));
     const double share = camera.delta_before ? 0 : (camera.n == 2 ? 0.0 : nee);
     fewer_camera = last * extend(share, raise(h, ratio(camera.other_before, camera.own_before)), camera.sum_before);
+    next_event = last * share;
   } else {
     fewer_camera = handed_over(h, camera, film, join_share(h, shares, camera.seen_before), 1);
   }
-  return here / (here + fewer_light + fewer_camera);
+  const double all = here + fewer_light + fewer_camera, rays = raise(h, shares.next_events / first_seen);
+  if (light.n > 1 || rays == 1) return here / all;
+  return share_of_pair(light.n == 0 ? here : fewer_light, next_event, rays, light.n == 0) / all;
 }
 
 double mis_of_camera(Heuristic h, const End& light, const End& camera, const Shares& shares) {

@@ -115,7 +115,7 @@ bool step(const Scene& scene, const Accel& accel, const WalkOptions& options, Su
   }
   v.delta = false, v.infinite = false;
   v.seen = walk.side == Side::camera && (subpath.n == 2 || (before.seen && before.delta));
-  v.shines = 0, v.received = 0;
+  v.shines = 0, v.received = 0, v.next_events = 1;
   v.shape = hit.shape, v.instance = hit.instance;
   if (subpath.n == 2 && walk.side == Side::camera) v.own = raster_factor(scene.camera, before.p, v.p) * cosine;
   make_guide(scene, options.fields, walk.side, surface, -walk.d, v.guide);

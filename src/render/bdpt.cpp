@@ -23,7 +23,7 @@ struct Work {
 
 float weigh(const Work& work, Candidate& c) {
   c.shares.inner = work.job.walk.inner_share, c.shares.seen = work.job.walk.seen_share;
-  c.shares.merge_inner = work.job.walk.merging.inner;
+  c.shares.merge_inner = work.job.walk.merging.inner, c.shares.first_seen = work.job.walk.first_seen;
   if (!work.job.next_event) c.shares.light_first = 0;
   return float(weight(work.job.walk.heuristic, c));
 }
@@ -148,7 +148,8 @@ void join_surface(Work& work, const Surface& surface) {
 // points on a lamp.
 float share_of_next_event(const Work& work, const Candidate& c) {
   if (c.light.sum_before == 0) return 1;  // cannot be hit
-  return float(1 / (1 + raise(work.job.walk.heuristic, ratio(c.light.other, c.light.own * c.shares.light_first))));
+  const double nee = c.light.own * c.shares.light_first * c.shares.next_events;
+  return float(1 / (1 + raise(work.job.walk.heuristic, ratio(c.light.other, nee))));
 }
 
 // What the camera subpath's last vertex makes of irradiance, relative to what its pixel is expected to be; 0: fields do
@@ -160,11 +161,11 @@ float worth_of(Work& work, const Vertex& v) {
 
 // Rays to lights: the more, the more of the pixel's light is expected of them. Behind the first vertex that the lens
 // sees they all hang on the one walk that came there.
-int next_events(const Work& work, const Vertex& v, float worth) {
+uint8_t next_events(const Work& work, const Vertex& v, float worth) {
   if (!(worth > 0) || v.guide.cell == none) return 1;
   const float brings = worth * work.job.walk.fields->q.cells[v.guide.cell].direct;
   const float most = v.seen ? seen_next_events : inner_next_events;
-  return brings > 0 ? int(std::clamp(most * std::sqrt(brings), 1.0f, 16.0f)) : 1;  // (J4)
+  return brings > 0 ? uint8_t(std::clamp(most * std::sqrt(brings), 1.0f, 16.0f)) : uint8_t(1);  // (J4)
 }
 
 // s = 1: next-event estimation.
@@ -174,8 +175,9 @@ void join_next_event(Work& work, float worth) {
   const int t = camera.n;
   Vertex& v = camera[t - 1];
   if (!job.next_event || job.scene->lights.empty()) return;
+  v.next_events = next_events(work, v, worth);
   LightNumbers first;
-  const int count = draw_light(*job.scene, v.guide, work.sample.sampler, first) ? next_events(work, v, worth) : 0;
+  const int count = draw_light(*job.scene, v.guide, work.sample.sampler, first) ? v.next_events : 0;
   LightChances chances;
   float received = 0;
   for (int i = 0; i < count; ++i) {

@@ -120,6 +120,7 @@ void add_merged(const Merged& sums, int t, const Rgb& factor, Sample& sample, Sc
 Shares shares_of(const WalkOptions& walk) {
   Shares shares;
   shares.camera_first = walk.light_paths, shares.inner = walk.inner_share, shares.seen = walk.seen_share;
+  shares.first_seen = walk.first_seen;
   return shares;
 }
 
@@ -135,7 +136,9 @@ float find_near(const Job& job, const Subpath& camera, bool inner, float radius,
   const int t = camera.n, most = job.walk.max_edges + 2 - t;
   const Vertex& v = camera[t - 1];
   const MergeSide side = camera_side(job, camera);
-  const double factor = v.seen ? seen_factor(job.walk.heuristic, shares_of(job.walk)) : 1;
+  const Shares shares = shares_of(job.walk);
+  const double joined = v.seen ? seen_factor(job.walk.heuristic, shares) : 1,
+               first = v.seen ? first_seen_factor(job.walk.heuristic, shares) : 1;
   float sum = 0;
   scratch.near.clear();
   for_each_near(job.photons[inner], v.p, radius, [&](const Photon& p) {
@@ -145,7 +148,7 @@ float find_near(const Job& job, const Subpath& camera, bool inner, float radius,
     const GuideEval e = evaluate(v.guide, p.wi, Mode::radiance);
     if (is_black(e.f_cos)) return;
     ++scratch.ledger->merge_at(p.s, t).joins;
-    const MergeSide light{p.s > 2 ? p.fixed * factor : p.fixed, p.slope};
+    const MergeSide light{p.fixed * (p.s > 2 ? joined : first), p.slope};
     const double w =
         job.merges_alone ? 1 : merge_weight(job.walk.heuristic, v.merge, light, e.pdf, side, e.pdf_reverse);
     scratch.near.push_back({&p, e.f_cos * p.beta / cosine, float(w)});  // (K1)

@@ -15,7 +15,7 @@ namespace {
 constexpr uint32_t first_look = 4, last_look = 64;  // passes
 constexpr uint32_t least_squares = 32, most_squares = 128;
 constexpr uint32_t square = plain_side * plain_side;  // pixels
-constexpr double exposed = 0.2;                       // mean luminance of the image as it would be looked at
+constexpr double exposed = 0.2;                       // mean luminance of the lit image as it would be looked at
 constexpr double dark = 0.01;                         // of relMSE
 constexpr double least_miss = 0.1;                    // of a square's light
 constexpr double fastest = 16;                        // of path tracing: passes for one of the guided integrator
@@ -134,6 +134,21 @@ Mean mean_of(const std::vector<double>& x) {
   return {mean, std::sqrt(std::max(square_sum / n - sqr(mean), 0.0) / n)};
 }
 
+// Scale with which to look at squares of these luminances. What is whiter than white counts as white: a lamp in view
+// must not make all else dark.
+double exposure(std::vector<double> luminances) {
+  std::erase_if(luminances, [](double x) { return !(x > 0); });
+  std::sort(luminances.begin(), luminances.end());
+  const double wanted = exposed * double(luminances.size());
+  double rest = std::accumulate(luminances.begin(), luminances.end(), 0.0);
+  for (size_t k = luminances.size(); k > 0; --k) {  // this many are not white
+    const double scale = (wanted - double(luminances.size() - k)) / rest;
+    if (scale * luminances[k - 1] <= 1) return scale;
+    rest -= luminances[k - 1];
+  }
+  return 0;
+}
+
 // From path tracing's error, its deviation, and the guided integrator's. A single firefly may be all that there is to
 // see in a first look: then there is a second one.
 void decide(double error, double deviation, double guided, double samples, uint32_t passes, Plain& plain) {
@@ -178,9 +193,11 @@ void doubt_plain(bool merges, RenderState& state) {
 PlainLook compare_halves(const PassHalves& guided, const PassHalves& plain) {
   PlainLook out;
   const double pixels = double(guided.sum.size()), n = guided.passes;
-  const double light = luminance(std::accumulate(guided.sum.begin(), guided.sum.end(), glm::dvec3(0)) / (n * pixels));
-  if (!(light > 0) || !(light < infinity)) return out;
-  const double scale = exposed / light;
+  std::vector<double> luminances;
+  for (size_t first = 0; first < guided.sum.size(); first += square)
+    luminances.push_back(square_of(guided, first).mean);
+  const double scale = exposure(std::move(luminances));
+  if (!(scale > 0) || !(scale < infinity)) return out;
   std::vector<double> errors[2], biases;
   for (size_t first = 0; first < guided.sum.size(); first += square) {
     const Square a = square_of(guided, first), b = square_of(plain, first);
@@ -213,6 +230,7 @@ Job plainly(Job job) {
   job.beyond = nullptr;
   job.guided = false, job.learning = nullptr, job.training = nullptr;
   job.walk.fields = nullptr, job.walk.merging = {}, job.walk.inner_share = job.walk.seen_share = 0;
+  job.walk.first_seen = 1;
   return job;
 }
 

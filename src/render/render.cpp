@@ -119,6 +119,8 @@ float light_rate(const Film& film, const Ledger& ledger) {
 
 // What joins of a guided vertex count for in the weights: about as many are made of each, where it matters (J3).
 constexpr double guided_joins = 2;
+// What next-event estimation counts for where the lens sees its vertex: several rays that lie evenly. (J7)
+constexpr double guided_first = 2;
 // Those at vertices that the lens sees, where joins have a small share of the light, and where they have all (J7).
 // Beyond, all that a camera subpath finds hangs on the one walk that came there, so that many joins tell hardly more
 // than one; measured (docs/results/joins.md).
@@ -210,6 +212,7 @@ Job with_vpls(Job job, const Film& film, std::vector<Scratch>& scratches, Vpls& 
   job.light_half = nullptr;
   job.walk.light_paths = vpls.paths,
   job.walk.inner_share = job.walk.seen_share = 0;  // the other weights are of s = 0, s = 1 and t = 1 alone
+  job.walk.first_seen = 1;
   vpls.camera = job.walk;
   vpls.camera.fields = nullptr;
   const uint32_t pass = film.dropped + film.passes;
@@ -326,6 +329,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
     job.guided = true;
     job.walk.inner_share = film.splats ? guided_joins : 0;
     job.walk.seen_share = job.walk.inner_share;  // more where they choose among many, see plan_pass
+    job.walk.first_seen = guided_first;
   }
   const bool leaving_out = may_leave_out(options);
   double wall0 = 0, cpu0 = 0;

@@ -66,8 +66,13 @@ std::vector<double> fast_weights(const OraclePath& path, Heuristic h) {
   const int n = int(path.vertices.size());
   const SideView light = view(path, Side::light, h), camera = view(path, Side::camera, h);
   const auto possible = kit::densities(path);
-  const Shares shares{double(path.nee / path.vertices[0].light), double(path.light_paths), double(path.inner),
-                      double(path.seen), double(path.merge_inner)};
+  const Shares shares{double(path.nee / path.vertices[0].light),
+                      double(path.light_paths),
+                      double(path.inner),
+                      double(path.seen),
+                      double(path.merge_inner),
+                      double(path.first_seen),
+                      double(path.next_events)};
   std::vector<double> out(2 * size_t(n), 0.0);
   for (int s = 0; s < n; ++s)
     if (possible[size_t(s)] > 0) out[size_t(s)] = mis_weight(h, end_of(light, s), end_of(camera, n - s), shares);
@@ -77,7 +82,7 @@ std::vector<double> fast_weights(const OraclePath& path, Heuristic h) {
     End l = end_of(light, j + 1), c = end_of(camera, n - j);
     MergeSide a = merge_side(h, l, 1, shares, Side::light);
     const MergeSide b = merge_side(h, c, 1, shares, Side::camera);
-    if (l.n > 2 && c.seen) a.fixed *= seen_factor(h, shares);
+    if (c.seen) a.fixed *= l.n > 2 ? seen_factor(h, shares) : first_seen_factor(h, shares);
     out[size_t(n + j)] = merge_weight(h, c.merge, a, l.other_before, b, c.other_before);
   }
   return out;
@@ -101,6 +106,8 @@ struct Maker {
     p.inner = uniform() < 0.5 ? 1 : 2 * uniform();
     p.seen = uniform() < 0.5 ? p.inner : static_cast<long double>(20 * uniform());
     p.merge_inner = uniform() < 0.3 ? 0 : uniform();
+    p.first_seen = uniform() < 0.5 ? 1 : 4 * uniform();
+    p.next_events = uniform() < 0.5 ? 1 : std::floor(1 + 16 * uniform());
     if (uniform() < 0.5)
       for (OracleVertex& x : p.vertices) x.merge = density();
     return p;

@@ -22,6 +22,8 @@ struct OraclePath {
   long double inner = 1;        ///< factor on the density of joins of two walked vertices
   long double seen = 1;         ///< the same where all between the camera's vertex and the lens are deltas
   long double merge_inner = 1;  ///< and of merges, but where all between the vertex and the lens are deltas
+  long double first_seen = 1;   ///< of next-event estimation, where all between its vertex and the lens are deltas
+  long double next_events = 1;  ///< what it counts for against s = 0 alone, without that factor
 };
 
 /// Density of each strategy, s = 0 .. k light vertices and k + 1 - s >= 1 camera vertices; 0 where it cannot make the

@@ -19,6 +19,7 @@ struct WholePath {
   LightPoint light;      // x_0; Point 0 is not used when it is infinite
   Vec3 travel{0, 0, 1};  // of the light at x_0
   std::vector<Point> points;
+  int next_events = 1;  // rays to lights from the vertex after x_0
 };
 
 kit::OraclePath densities_afresh(const Scene& scene, const WholePath& path, double light_paths, const Merging& merging);

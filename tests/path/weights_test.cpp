@@ -66,12 +66,12 @@ struct Tally {
   const Fields* fields = nullptr;
   double light_paths = 333;
   Merging merging;
-  double seen = 1;
+  double seen = 1, first_seen = 1;
   int compared[ways] = {}, off[ways] = {};
   double worst[ways] = {};
 
   void compare(const Scene& scene, Candidate& c, const WholePath& path, int s) {
-    c.shares.merge_inner = merging.inner, c.shares.seen = seen;
+    c.shares.merge_inner = merging.inner, c.shares.seen = seen, c.shares.first_seen = first_seen;
     compare(scene, weight(heuristic, c), path, size_t(s), way_of(s, int(path.points.size()) - s));
   }
 
@@ -79,7 +79,7 @@ struct Tally {
   void compare(const Scene& scene, double fast, WholePath path, size_t which, Way kind) {
     path.fields = fields;
     OraclePath slow = densities_afresh(scene, path, light_paths, merging);
-    slow.seen = seen;
+    slow.seen = seen, slow.first_seen = first_seen, slow.next_events = path.next_events;
     const double right = double(weights(slow, heuristic == Heuristic::power ? 2 : 1)[which]);
     // Relative, or absolute where the weight hardly counts: float rounding in long chains of densities.
     const double error = std::abs(fast - right) / std::max(right, 1e-4);
@@ -115,6 +115,7 @@ WholePath lit(const LightPoint& light, const Vec3& wi, const Traced& camera, int
   path.travel = -wi;
   path.points.push_back({light.p, light.infinite ? Vec3(0) : light.n, {}, false});
   append(path, camera, t, true);
+  path.next_events = camera.path[t - 1].next_events;
   path.points[1].delta = delta_at_end;
   return path;
 }
@@ -158,7 +159,7 @@ void compare_merges(const Tracer& tracer, const Traced& light, const Traced& cam
       const GuideEval e = evaluate(c.guide, p.wi, Mode::radiance);
       if (is_black(e.f_cos)) continue;
       Shares shares{1, tally.light_paths};
-      shares.seen = tally.seen;
+      shares.seen = tally.seen, shares.first_seen = tally.first_seen;
       const End end{t, c.own, 0, before.own, 0, before.delta, c.sum, c.merge, c.seen, before.seen};
       const MergeSide side = merge_side(h, end, c.back, shares, Side::camera);
       const MergeSide lit{c.seen ? p.fixed * seen_factor(h, shares) : p.fixed, p.slope};
@@ -219,7 +220,7 @@ struct Case {
   Heuristic heuristic = Heuristic::power;
   const Fields* fields = nullptr;
   Merging merging = {};
-  double seen = 1;
+  double seen = 1, first_seen = 1;
 };
 
 void expect_oracle(const Scene& scene, int paths, const Case& which) {
@@ -232,6 +233,7 @@ void expect_oracle(const Scene& scene, int paths, const Case& which) {
   tracer.options.light_paths = tally.light_paths;
   tracer.options.merging = tally.merging = which.merging;
   tracer.options.seen_share = tally.seen = which.seen;
+  tally.first_seen = which.first_seen;
   int compared = 0, vertices = 0, guided = 0;
   for (int i = 0; i < paths; ++i) {
     Sampler c = make_sampler(SamplerKind::independent, 1, Side::camera, uint64_t(i), 0);
@@ -240,6 +242,8 @@ void expect_oracle(const Scene& scene, int paths, const Case& which) {
     Traced camera, light;
     start_camera(scene, tracer.options, raster, lens, camera.path, camera.walk);
     tracer.go_on(camera, c, true);
+    if (which.fields)  // several rays to lights, as many as one likes
+      for (int k = 1; k < camera.path.n; ++k) camera.path[k].next_events = uint8_t(1 + (k + i) % 5);
     if (start_light(scene, tracer.options, l, light.path, light.walk)) tracer.go_on(light, l, true);
     compare_all(tracer, light, camera, lens, c, tally);
     for (const Traced* t : {&camera, &light})
@@ -263,9 +267,9 @@ void expect_oracle(const Scene& scene, int paths = 3000) {
     SCOPED_TRACE(heuristic == Heuristic::balance ? "balance" : "power");
     expect_oracle(scene, paths, {heuristic, nullptr});
     SCOPED_TRACE("guided");
-    expect_oracle(scene, paths / 2, {heuristic, &fields, {}, 8});
+    expect_oracle(scene, paths / 2, {heuristic, &fields, {}, 8, 3});
     SCOPED_TRACE("merging");
-    expect_oracle(scene, paths / 3, {heuristic, &fields, {500, {0, 0, 4}, 0.01f, 0, 1, 0.3}, 8});
+    expect_oracle(scene, paths / 3, {heuristic, &fields, {500, {0, 0, 4}, 0.01f, 0, 1, 0.3}, 8, 3});
   }
 }
 

@@ -46,6 +46,12 @@ TEST(Plain, ErrorsAreThoseOfASample) {
   EXPECT_LT(passes * look.bias, 0.02);
 }
 
+// Two squares of 128 a thousand times as bright: the others are looked at a little darker, not as next to black.
+TEST(Plain, LampsInViewAreWhite) {
+  const PlainLook look = compare_halves(times(flicker(0.5, 1), 1000, 2), times(flicker(0.5, 2), 1000, 2));
+  EXPECT_NEAR(passes * look.guided, 1 / (1 + 0.01 / sqr((25.6 - 2) / 126)), 0.06);
+}
+
 // As relMSE has it; noise that is red here and blue there is none to the luminance.
 TEST(Plain, ErrorsAreOfColours) {
   PassHalves h;

@@ -29,6 +29,10 @@ struct Shares {
   double inner = 1;  ///< what a join of two vertices that both were walked to counts for, as a factor on its density
   double seen = 1;   ///< the same where the lens sees the camera's vertex, itself or by way of deltas
   double merge_inner = 1;  ///< what merges beyond the first vertex that the camera sees count for
+  double first_seen = 1;  ///< what next-event estimation counts for where the lens sees its vertex, itself or by way of
+                          ///< deltas, as a factor on light_first
+  double next_events = 1;  ///< rays to lights from the vertex of s = 1, which s = 0 leaves too: these two share what is
+                           ///< theirs as if each ray counted
 };
 
 /// Weight of the strategy that joins light (s = light.n >= 0) and camera (t = camera.n >= 1) vertices. For s = 0 the
@@ -49,10 +53,11 @@ struct MergeSide {
 /// per solid angle of going back into the area density of the vertex before. (K6)
 MergeSide merge_side(Heuristic h, const End& end, double back, const Shares& shares, Side side);
 /// What `fixed` of a light side of more than two vertices, made for a camera's vertex that the lens does not see, is to
-/// be multiplied by where it does: one of the other strategies joins at it.
+/// be multiplied by where it does: one of the other strategies joins at it; and what that of two is.
 inline double seen_factor(Heuristic h, const Shares& shares) {
   return shares.inner > 0 ? raise(h, shares.seen / shares.inner) : 1;
 }
+inline double first_seen_factor(Heuristic h, const Shares& shares) { return raise(h, shares.first_seen); }
 /// Weight of the merge; reverse: densities per solid angle of going on to the vertex before on each side. merge is
 /// pi r^2 N times its share.
 double merge_weight(Heuristic h, double merge, const MergeSide& light, double light_reverse, const MergeSide& camera,

@@ -21,9 +21,10 @@ struct Vertex {
   double own = 0;   ///< area density of this vertex as its own side generated it (solid angle when infinite)
   double sum = 0;   ///< S of the vertex *before* this one, prefix.h (R3); vertex 0: its own
   float merge = 0;  ///< merge_density here (walk.h), on the camera's side times what the merge counts for
-  bool delta = false;     ///< the subpath went on from here by a delta event
-  bool seen = false;      ///< by the lens, itself or by way of delta events; camera subpaths
-  bool infinite = false;  ///< vertex 0: a direction rather than a place
+  bool delta = false;       ///< the subpath went on from here by a delta event
+  bool seen = false;        ///< by the lens, itself or by way of delta events; camera subpaths
+  bool infinite = false;    ///< vertex 0: a direction rather than a place
+  uint8_t next_events = 1;  ///< rays to lights from here, also where none was sent by chance; camera subpaths
   float received =
       0;             ///< luminance of what next-event estimation (the lens) brought here, per area; for Rule::returned
   float shines = 0;  ///< luminance of the light that the subpath ran into here, times its MIS weight

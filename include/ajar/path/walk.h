@@ -55,6 +55,7 @@ struct WalkOptions {
   const Fields* fields = nullptr;  ///< guide the subpaths; null: unguided
   double inner_share = 1;          ///< Shares::inner of all joins (join/mis.h)
   double seen_share = 1;           ///< Shares::seen
+  double first_seen = 1;           ///< Shares::first_seen
   double light_paths = 1;          ///< light subpaths that splat to the film, for each camera sample of a pixel; with
                                    ///< 0, and other shares of 0, weights are of s = 0 and s = 1 alone
   Merging merging;
