@@ -111,7 +111,7 @@ Scene with_texel(float value) {
   write_exr(path, picture, {}, false);
   Scene scene = usual();
   try {
-    scene.images.push_back(load_image(path, false, 0));
+    scene.images.push_back(load_image(path));
   } catch (...) {
     std::filesystem::remove(path);
     throw;

@@ -3,10 +3,12 @@
 #include <zlib.h>
 
 #include <array>
+#include <cstring>
 #include <fstream>
 
 #include "ajar/core/error.h"
 #include "ajar/scene/texture.h"
+#include "primaries.h"
 
 namespace ajar {
 namespace {
@@ -25,27 +27,25 @@ struct Transfer {
   }
 };
 
-Transfer transfer_of(const OIIO::ImageSpec& spec, bool raw, float gamma) {
-  if (raw) return {1};
-  if (gamma > 0) return {gamma};
+// says: whether what the file says of its gamma counts.
+Transfer transfer_of(const OIIO::ImageSpec& spec, const ImageOptions& options, bool says) {
+  if (options.raw) return {1};
+  if (options.gamma > 0) return {options.gamma};
   if (spec.format.basetype == OIIO::TypeDesc::HALF || spec.format.basetype == OIIO::TypeDesc::FLOAT ||
       spec.format.basetype == OIIO::TypeDesc::DOUBLE)
     return {1};
+  if (!says) return {0};
   const float said = spec.get_float_attribute("oiio:Gamma", 0);
   if (said > 0) return {said};
   return {OIIO::Strutil::iequals(spec.get_string_attribute("oiio:ColorSpace"), "linear") ? 1.0f : 0.0f};
 }
-
-// Whether numbers may be negative, and whether what is not finite is mended.
-struct Reading {
-  bool raw, mend;
-};
 
 // Where the colours and alpha are among the file's channels; alpha -1: nowhere.
 struct Layout {
   int color[3] = {0, 1, 2};
   int colors = 3;
   int alpha = -1;
+  bool normals = false;  // a map of normals
 };
 
 Layout layout_of(const OIIO::ImageSpec& spec) {
@@ -55,13 +55,37 @@ Layout layout_of(const OIIO::ImageSpec& spec) {
   if (r >= 0 && g >= 0 && b >= 0) {
     layout.color[0] = r, layout.color[1] = g, layout.color[2] = b;
   } else if (const int x = spec.channelindex("X"), y = spec.channelindex("Y"), z = spec.channelindex("Z");
-             x >= 0 && y >= 0 && z >= 0) {  // a map of normals
+             x >= 0 && y >= 0 && z >= 0) {
+    layout.normals = true;
     layout.color[0] = x, layout.color[1] = y, layout.color[2] = z;
   } else if (spec.nchannels < 3 || layout.alpha == 1 || spec.channelindex("Y") >= 0) {
     layout.colors = 1;
     layout.color[0] = std::max(spec.channelindex("Y"), 0);
   }
   return layout;
+}
+
+// What makes the file's colours those of Rec. 709, if they are others.
+std::optional<Mat3> conversion_of(const std::string& path, const OIIO::ImageSpec& spec, const Layout& layout,
+                                  bool raw) {
+  Chromaticities said{};
+  const OIIO::ParamValue* attribute = spec.find_attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8));
+  if (raw || layout.colors != 3 || layout.normals || attribute == nullptr) return {};
+  std::memcpy(said.data(), attribute->data(), sizeof said);
+  if (are_rec709(said)) return {};
+  const std::optional<Mat3> conversion = to_rec709(said);
+  if (!conversion)
+    throw Error(fmt::format("{}: its chromaticities ({}) make no colours; correct them, or take them out of the file",
+                            path, fmt::join(said, ", ")));
+  return conversion;
+}
+
+void convert(std::vector<float>& all, const Layout& layout, int channels, const Mat3& conversion) {
+  for (size_t i = 0; i < all.size(); i += size_t(channels)) {
+    const auto part = [&](int c) -> float& { return all[i + size_t(layout.color[c])]; };
+    const Rgb converted = conversion * Rgb(part(0), part(1), part(2));
+    for (int c = 0; c < 3; ++c) part(c) = converted[c];
+  }
 }
 
 // Only what an image can hold: a damaged header must not ask for all memory.
@@ -139,28 +163,28 @@ void keep_bytes(Image& image, const Layout& layout, int channels, const std::vec
 }
 
 // A number of a pixel, linear. Filters that make images smaller leave slightly negative ones beside bright spots.
-float take_number(Image& image, float stored, size_t pixel, const Transfer& transfer, const Reading& reading) {
+float take_number(Image& image, float stored, size_t pixel, const Transfer& transfer, const ImageOptions& options) {
   const float value = transfer(stored);
   if (!std::isfinite(value)) {
-    if (!reading.mend)
+    if (!options.mend)
       throw Error(fmt::format("{}: pixel ({}, {}) holds {}; repair the image; with --lenient: 0 in its place",
                               image.name, pixel % size_t(image.width), pixel / size_t(image.width), stored));
     ++image.not_finite;
     return 0;
   }
-  if (!(stored < 0) || reading.raw) return value;
+  if (!(stored < 0) || options.raw) return value;
   ++image.negative;
   return 0;
 }
 
-void keep_floats(Image& image, const Layout& layout, int channels, const Transfer& transfer, const Reading& reading,
-                 const std::vector<float>& all) {
+void keep_floats(Image& image, const Layout& layout, int channels, const Transfer& transfer,
+                 const ImageOptions& options, const std::vector<float>& all) {
   const size_t pixels = size_t(image.width) * size_t(image.height);
   image.floats.resize(pixels * size_t(image.channels));
   for (size_t i = 0; i < pixels; ++i)
     for (int c = 0; c < image.channels; ++c)
       image.floats[i * size_t(image.channels) + size_t(c)] =
-          take_number(image, all[i * size_t(channels) + size_t(layout.color[c])], i, transfer, reading);
+          take_number(image, all[i * size_t(channels) + size_t(layout.color[c])], i, transfer, options);
   if (layout.alpha < 0) return;
   image.alpha.resize(pixels);
   for (size_t i = 0; i < pixels; ++i) {
@@ -179,7 +203,7 @@ void drop_idle_alpha(Image& image) {
 
 }  // namespace
 
-Image load_image(const std::string& path, bool raw, float gamma, bool mend) {
+Image load_image(const std::string& path, const ImageOptions& options) {
   check_png(path);
   OIIO::ImageSpec config;
   config.attribute("oiio:UnassociatedAlpha", 1);  // colours as they are stored
@@ -190,7 +214,8 @@ Image load_image(const std::string& path, bool raw, float gamma, bool mend) {
   const OIIO::ImageSpec spec = input->spec();
   check_size(path, spec);
   const Layout layout = layout_of(spec);
-  const Transfer transfer = transfer_of(spec, raw, gamma);
+  const bool is_png = std::string_view(input->format_name()) == "png";
+  const Transfer transfer = transfer_of(spec, options, !is_png || options.png_gamma);
   Image image;
   image.name = path;
   image.width = spec.width, image.height = spec.height, image.channels = layout.colors;
@@ -198,8 +223,10 @@ Image load_image(const std::string& path, bool raw, float gamma, bool mend) {
     for (int i = 0; i < 256; ++i) image.decode[i] = transfer(float(i) / 255);
     keep_bytes(image, layout, spec.nchannels, read_all<uint8_t>(path, *input, spec, OIIO::TypeDesc::UINT8));
   } else {
-    keep_floats(image, layout, spec.nchannels, transfer, {raw, mend},
-                read_all<float>(path, *input, spec, OIIO::TypeDesc::FLOAT));
+    std::vector<float> all = read_all<float>(path, *input, spec, OIIO::TypeDesc::FLOAT);
+    if (const auto conversion = conversion_of(path, spec, layout, options.raw))
+      convert(all, layout, spec.nchannels, *conversion);
+    keep_floats(image, layout, spec.nchannels, transfer, options, all);
   }
   drop_idle_alpha(image);
   return image;

@@ -15,6 +15,7 @@ namespace {
 class ImageFile : public testing::Test {
  protected:
   std::filesystem::path folder;
+  OIIO::ParamValueList attributes;  // what files that are written say
   void SetUp() override {
     folder = std::filesystem::path(testing::TempDir()) /
              (std::string("ajar-image-") + testing::UnitTest::GetInstance()->current_test_info()->name());
@@ -31,6 +32,7 @@ class ImageFile : public testing::Test {
     OIIO::ImageSpec spec(width, height, channels, stored == OIIO::TypeDesc::UNKNOWN ? type : stored);
     spec.attribute("oiio:UnassociatedAlpha", 1);
     spec.attribute("CompressionQuality", 100);
+    spec.extra_attribs.merge(attributes);
     EXPECT_TRUE(out->open(path, spec)) << name;
     EXPECT_TRUE(out->write_image(type, values.data())) << name;
     out->close();
@@ -51,7 +53,7 @@ TEST_F(ImageFile, EightBitFormats) {
     for (int x = 0; x < w; ++x)
       for (int c = 0; c < 3; ++c) pixels.push_back(y < h / 2 ? (c == 0 ? 200 : 50) : (c == 2 ? 120 : 30));
   for (const char* name : {"a.png", "a.jpg", "a.tga", "a.bmp", "a.tif", "with space.PNG"}) {
-    const Image image = load_image(write(name, w, h, 3, OIIO::TypeDesc::UINT8, pixels), false);
+    const Image image = load_image(write(name, w, h, 3, OIIO::TypeDesc::UINT8, pixels));
     EXPECT_EQ(image.width, w);
     EXPECT_EQ(image.height, h);
     EXPECT_EQ(image.channels, 3) << name;
@@ -61,9 +63,9 @@ TEST_F(ImageFile, EightBitFormats) {
     EXPECT_NEAR(texel(image, 3, 2).x, decode_srgb(200), tolerance) << name;
     EXPECT_NEAR(texel(image, 3, 2).y, decode_srgb(50), tolerance) << name;
     EXPECT_NEAR(texel(image, 3, 29).z, decode_srgb(120), tolerance) << name;
-    const Image raw = load_image((folder / name).string(), true);
+    const Image raw = load_image((folder / name).string(), {.raw = true});
     EXPECT_NEAR(texel(raw, 3, 2).x, 200 / 255.0f, 0.02f) << name;
-    const Image gamma = load_image((folder / name).string(), false, 3);
+    const Image gamma = load_image((folder / name).string(), {.gamma = 3});
     EXPECT_NEAR(texel(gamma, 3, 2).x, std::pow(200 / 255.0f, 3.0f), 0.02f) << name;
   }
 }
@@ -76,26 +78,26 @@ TEST_F(ImageFile, ChannelsXyzAreNoGrey) {
   const float values[3] = {0.25f, 0.5f, 0.75f};
   auto out = OIIO::ImageOutput::create(path);
   ASSERT_TRUE(out->open(path, spec) && out->write_image(OIIO::TypeDesc::FLOAT, values) && out->close());
-  const Image image = load_image(path, true);
+  const Image image = load_image(path, {.raw = true});
   EXPECT_EQ(image.channels, 3);
   EXPECT_EQ(texel(image, 0, 0), Rgb(0.25f, 0.5f, 0.75f));
 }
 
 TEST_F(ImageFile, GreyAlphaAndSixteenBit) {
-  const Image grey = load_image(write<uint8_t>("g.png", 2, 1, 1, OIIO::TypeDesc::UINT8, {0, 188}), false);
+  const Image grey = load_image(write<uint8_t>("g.png", 2, 1, 1, OIIO::TypeDesc::UINT8, {0, 188}));
   EXPECT_EQ(grey.channels, 1);
   EXPECT_EQ(texel(grey, 1, 0), Rgb(decode_srgb(188)));
-  const Image la = load_image(write<uint8_t>("la.png", 2, 1, 2, OIIO::TypeDesc::UINT8, {10, 0, 188, 128}), false);
+  const Image la = load_image(write<uint8_t>("la.png", 2, 1, 2, OIIO::TypeDesc::UINT8, {10, 0, 188, 128}));
   EXPECT_EQ(la.channels, 1);
   EXPECT_EQ(la.alpha, (std::vector<uint8_t>{0, 128}));
   EXPECT_EQ(texel(la, 0, 0).x, decode_srgb(10));  // not multiplied by alpha
-  const Image rgba = load_image(write<uint8_t>("rgba.png", 1, 1, 4, OIIO::TypeDesc::UINT8, {100, 150, 200, 64}), false);
+  const Image rgba = load_image(write<uint8_t>("rgba.png", 1, 1, 4, OIIO::TypeDesc::UINT8, {100, 150, 200, 64}));
   EXPECT_EQ(rgba.channels, 3);
   EXPECT_EQ(rgba.alpha, std::vector<uint8_t>{64});
   EXPECT_EQ(texel(rgba, 0, 0), Rgb(decode_srgb(100), decode_srgb(150), decode_srgb(200)));
-  const Image opaque = load_image(write<uint8_t>("o.png", 1, 1, 4, OIIO::TypeDesc::UINT8, {1, 2, 3, 255}), false);
+  const Image opaque = load_image(write<uint8_t>("o.png", 1, 1, 4, OIIO::TypeDesc::UINT8, {1, 2, 3, 255}));
   EXPECT_TRUE(opaque.alpha.empty());
-  const Image deep = load_image(write<uint16_t>("d.png", 1, 1, 3, OIIO::TypeDesc::UINT16, {25700, 0, 65535}), false);
+  const Image deep = load_image(write<uint16_t>("d.png", 1, 1, 3, OIIO::TypeDesc::UINT16, {25700, 0, 65535}));
   EXPECT_NEAR(texel(deep, 0, 0).x, decode_srgb(100), 1e-6f);
   EXPECT_EQ(texel(deep, 0, 0).z, 1);
 }
@@ -103,22 +105,54 @@ TEST_F(ImageFile, GreyAlphaAndSixteenBit) {
 TEST_F(ImageFile, FloatFormatsAreLinear) {
   const std::vector<float> values{0.25f, 2, 1000, 1e-3f, 0.5f, 1};
   for (const char* name : {"f.exr", "f.hdr", "f.tif"}) {
-    const Image image = load_image(write(name, 2, 1, 3, OIIO::TypeDesc::FLOAT, values), false);
+    const Image image = load_image(write(name, 2, 1, 3, OIIO::TypeDesc::FLOAT, values));
     EXPECT_TRUE(image.bytes.empty());
     for (int c = 0; c < 3; ++c)
       EXPECT_NEAR(texel(image, 0, 0)[c] / values[size_t(c)], 1, std::string(name) == "f.hdr" ? 1 : 1e-6) << name;
     EXPECT_NEAR(texel(image, 0, 0).z, 1000, 10) << name;
   }
-  const Image half = load_image(write("h.exr", 2, 1, 3, OIIO::TypeDesc::FLOAT, values, OIIO::TypeDesc::HALF), false);
+  const Image half = load_image(write("h.exr", 2, 1, 3, OIIO::TypeDesc::FLOAT, values, OIIO::TypeDesc::HALF));
   EXPECT_NEAR(texel(half, 0, 0).x, 0.25f, 1e-6f);
 }
 
+// By the file's primaries and white, in the order of OpenEXR; numbers by its matrices.
+TEST_F(ImageFile, OtherPrimariesAreConverted) {
+  const std::vector<float> values{0.8f, 0.2f, 0.1f, 0.4123908f, 0.2126390f, 0.0193308f};
+  const auto of = [&](const std::array<float, 8>& chromaticities, const ImageOptions& options = {}) {
+    attributes.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), chromaticities.data());
+    return load_image(write("c.exr", 2, 1, 3, OIIO::TypeDesc::FLOAT, values), options);
+  };
+  const std::array<float, 8> rec709{0.64f, 0.33f, 0.3f, 0.6f, 0.15f, 0.06f, 0.3127f, 0.329f};
+  const std::array<float, 8> aces{0.713f, 0.293f, 0.165f, 0.83f, 0.128f, 0.044f, 0.32168f, 0.33767f};
+  const std::array<float, 8> xyz{1, 0, 0, 1, 0, 0, 1 / 3.0f, 1 / 3.0f};
+  const auto near = [](const Rgb& a, const Rgb& b) { return max_component(glm::abs(a - b)) < 1e-4f; };
+  EXPECT_TRUE(near(texel(of(aces), 0, 0), Rgb(1.2562f, 0.1208f, 0.06176f)));
+  EXPECT_TRUE(near(texel(of(xyz), 1, 0), Rgb(1, 0, 0)));
+  EXPECT_EQ(texel(of(rec709), 0, 0), Rgb(0.8f, 0.2f, 0.1f));
+  EXPECT_EQ(texel(of(aces, {.raw = true}), 0, 0), Rgb(0.8f, 0.2f, 0.1f));
+  const std::array<float, 8> line{0.1f, 0.1f, 0.2f, 0.2f, 0.3f, 0.3f, 0.3127f, 0.329f};
+  for (const std::array<float, 8>& none_at_all :
+       {line, std::array<float, 8>{}, {std::nanf(""), 0, 0, 1, 0, 0, 0.3f, 0.3f}})
+    EXPECT_THROW(of(none_at_all), Error);
+}
+
+// A PNG may say one; Mitsuba listens to it in version 0.x.
+TEST_F(ImageFile, GammaOfAPngCountsWhereAskedFor) {
+  attributes.attribute("oiio:ColorSpace", "Linear");
+  const std::string path = write<uint8_t>("g.png", 1, 1, 3, OIIO::TypeDesc::UINT8, {188, 188, 188});
+  EXPECT_EQ(texel(load_image(path), 0, 0), Rgb(decode_srgb(188)));
+  EXPECT_EQ(texel(load_image(path, {.png_gamma = true}), 0, 0), Rgb(188 / 255.0f));
+  attributes.clear();
+  const std::string silent = write<uint8_t>("s.png", 1, 1, 3, OIIO::TypeDesc::UINT8, {188, 188, 188});
+  EXPECT_EQ(texel(load_image(silent, {.png_gamma = true}), 0, 0), Rgb(decode_srgb(188)));
+}
+
 TEST_F(ImageFile, DamagedFilesAreErrors) {
-  EXPECT_THROW(load_image((folder / "missing.png").string(), false), Error);
+  EXPECT_THROW(load_image((folder / "missing.png").string()), Error);
   std::ofstream(folder / "text.png") << "no image at all";
-  EXPECT_THROW(load_image((folder / "text.png").string(), false), Error);
+  EXPECT_THROW(load_image((folder / "text.png").string()), Error);
   std::ofstream(folder / "empty.exr") << "";
-  EXPECT_THROW(load_image((folder / "empty.exr").string(), false), Error);
+  EXPECT_THROW(load_image((folder / "empty.exr").string()), Error);
   std::vector<uint8_t> noise(64 * 64 * 3);
   for (size_t i = 0; i < noise.size(); ++i) noise[i] = uint8_t(i * i * 31 + i * 7);
   for (const char* name : {"cut.png", "cut.exr", "cut.tif", "cut.tga", "cut.bmp", "cut.jpg", "cut.hdr"}) {
@@ -126,7 +160,7 @@ TEST_F(ImageFile, DamagedFilesAreErrors) {
                                    std::string(name) == "cut.exr" ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::UINT8);
     std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
     testing::internal::CaptureStderr();
-    EXPECT_THROW(load_image(path, false), Error) << name;
+    EXPECT_THROW(load_image(path), Error) << name;
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << name;
   }
 }
@@ -147,7 +181,7 @@ TEST_F(ImageFile, DamagedPngsAreErrorsOfOneLine) {
     testing::internal::CaptureStderr();
     std::string what;
     try {
-      load_image(path, false);
+      load_image(path);
     } catch (const Error& e) {
       what = e.what();
     }
@@ -168,13 +202,13 @@ TEST_F(ImageFile, NonsenseTexelsAreErrors) {
     values[size_t((1 * 4 + 2) * 3 + 1)] = bad;
     const std::string path = write("bad.exr", 4, 3, 3, OIIO::TypeDesc::FLOAT, values);
     try {
-      load_image(path, false);
+      load_image(path);
       ADD_FAILURE() << bad;
     } catch (const Error& e) {
       EXPECT_NE(std::string(e.what()).find("bad.exr: pixel (2, 1)"), std::string::npos) << e.what();
     }
-    EXPECT_THROW(load_image(path, true), Error);
-    const Image mended = load_image(path, false, 0, true);
+    EXPECT_THROW(load_image(path, {.raw = true}), Error);
+    const Image mended = load_image(path, {.mend = true});
     EXPECT_EQ(texel(mended, 2, 1), Rgb(0.5f, 0, 0.5f));
     EXPECT_EQ(mended.not_finite, 1u);
     EXPECT_EQ(mended.negative, 0u);
@@ -186,16 +220,16 @@ TEST_F(ImageFile, NegativeTexelsBecomeZero) {
   std::vector<float> values(3 * 4 * 3, 0.5f);
   values[size_t((1 * 4 + 2) * 3 + 1)] = -1e-6f;
   const std::string path = write("dark.exr", 4, 3, 3, OIIO::TypeDesc::FLOAT, values);
-  const Image image = load_image(path, false);
+  const Image image = load_image(path);
   EXPECT_EQ(texel(image, 2, 1), Rgb(0.5f, 0, 0.5f));
   EXPECT_EQ(image.negative, 1u);
-  EXPECT_EQ(texel(load_image(path, true), 2, 1).y, -1e-6f) << "raw: a displacement may be negative";
+  EXPECT_EQ(texel(load_image(path, {.raw = true}), 2, 1).y, -1e-6f) << "raw: a displacement may be negative";
 }
 
 // A header that promises more than memory holds.
 TEST_F(ImageFile, AbsurdSizesAreErrors) {
   std::ofstream(folder / "huge.hdr") << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 200000 +X 200000\n";
-  EXPECT_THROW(load_image((folder / "huge.hdr").string(), false), Error);
+  EXPECT_THROW(load_image((folder / "huge.hdr").string()), Error);
 }
 
 }  // namespace

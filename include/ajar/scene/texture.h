@@ -81,11 +81,18 @@ Rgb mean(const Scene& scene, const Slot& slot);
 /// largest value in the mesh; without one they are infinite.
 Rgb maximum(const Scene& scene, const Slot& slot, const Mesh* mesh = nullptr);
 
-/// Reads any image that OpenImageIO reads. raw: numbers as they stand; gamma 0: by the file's own colour space
-/// (8- and 16-bit sRGB, float linear), else the given exponent. Files with alpha keep colours that are not multiplied
-/// by it as they stand. Negative numbers become 0 (unless raw), and with mend those that are not finite; both are
-/// counted. Throws Error where the file is missing, damaged or larger than 2 GiB decoded, and where a texel is not
-/// finite.
-Image load_image(const std::string& path, bool raw, float gamma = 0, bool mend = false);
+/// How the numbers of a file become those of an image.
+struct ImageOptions {
+  bool raw = false;        ///< as they stand
+  float gamma = 0;         ///< this exponent; 0: by the file (8- and 16-bit sRGB, float linear)
+  bool mend = false;       ///< those that are not finite become 0
+  bool png_gamma = false;  ///< a PNG that says its gamma has that, as in Mitsuba 0.x; else all are sRGB
+};
+
+/// Reads any image that OpenImageIO reads. Files with alpha keep colours that are not multiplied by it as they stand.
+/// Colours of primaries other than those of Rec. 709, as EXR files may say, are converted unless raw. Negative numbers
+/// become 0 (unless raw), and with mend those that are not finite; both are counted. Throws Error where the file is
+/// missing, damaged or larger than 2 GiB decoded, and where a texel is not finite.
+Image load_image(const std::string& path, const ImageOptions& options = {});
 
 }  // namespace ajar

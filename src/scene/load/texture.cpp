@@ -166,8 +166,8 @@ uint32_t load_image_file(Loader& loader, const Node& node, const std::string& pa
   const uint32_t index = uint32_t(loader.scene.images.size());
   const Image* kept = loader.cache ? find_value(loader.cache->images, key) : nullptr;
   try {
-    loader.scene.images.push_back(
-        kept ? *kept : load_image(path, raw, raw ? 0.0f : float(std::max(gamma, 0.0)), loader.lenient));
+    const ImageOptions options{raw, float(std::max(gamma, 0.0)), loader.lenient, loader.document.old};
+    loader.scene.images.push_back(kept ? *kept : load_image(path, options));
   } catch (const Error& error) {
     fail(loader, node, error.what());
   }

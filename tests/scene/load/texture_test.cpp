@@ -70,6 +70,15 @@ TEST(TextureFile, RawGammaAndChannel) {
   EXPECT_EQ(with(bitmap("<string name='channel' value='a'/>")).textures[0].channel, Channel::alpha);
 }
 
+// linear.png says that its gamma is 1.
+TEST(TextureFile, GammaOfAPngCountsInOldScenes) {
+  const std::string text =
+      "<bsdf type='diffuse'><texture name='reflectance' type='bitmap'><string name='filename' value='linear.png'/>"
+      "</texture></bsdf>";
+  EXPECT_NEAR(load_inside(text, {}, "0.6.0").images[0].decode[128], 128 / 255.0, 1e-6);
+  EXPECT_NEAR(load_inside(text).images[0].decode[128], 0.21586, 1e-4);
+}
+
 TEST(TextureFile, IsReadOnce) {
   const Scene s =
       load_inside("<bsdf type='diffuse'>" + bitmap() + "</bsdf><bsdf type='diffuse'>" + bitmap() + "</bsdf>" +
