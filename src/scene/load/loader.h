@@ -167,9 +167,6 @@ Rgb rgb_of_list(std::vector<std::pair<double, double>> list, Colour kind);
 /// Radiance of a black body [W/(m^2 sr nm)] at a temperature in kelvin, as RGB.
 Rgb rgb_of_blackbody(double kelvin);
 
-/// A part of a colour that is encoded as sRGB (IEC 61966-2-1), as linear light.
-double from_srgb(double encoded);
-
 struct Metal {
   const char* name;
   Rgb eta, k;

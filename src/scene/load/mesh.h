@@ -33,7 +33,8 @@ struct MeshOptions {
   float max_smooth_angle = -1;  ///< degrees; 0 or more: normals are made anew, edges sharper than this stay sharp
   /// OBJ: whether to take faces by the name that usemtl gave them (empty before the first); all where it is not set.
   std::function<bool(std::string_view)> takes_material;
-  bool srgb = false;  ///< PLY: vertex_color is encoded as sRGB; whoever reads it has to decode it
+  bool srgb = false;     ///< PLY: vertex_color is encoded as sRGB; whoever reads it has to decode it
+  bool encoded = false;  ///< PLY: integers of attributes are parts of their type's largest, encoded as sRGB
   // OBJ, as Mitsuba 0.x has it:
   bool weld = false;   ///< corners without a normal share vertices by their position and uv, not by index
   bool apart = false;  ///< faces under different g or usemtl share no computed normals
@@ -80,6 +81,8 @@ void transform(Mesh& mesh, const Mat4& to_world);
 
 // What the readers share.
 
+/// A part of a colour that is encoded as sRGB (IEC 61966-2-1), as linear light.
+double from_srgb(double encoded);
 /// A file to read from, and the bytes of one. Throw Error where it cannot be read.
 std::ifstream open_bytes(const std::string& path);
 std::string read_bytes(const std::string& path);

@@ -28,6 +28,7 @@ struct Body {
   const char* p;
   const char* end;
   const std::string& file;
+  bool encoded = false;  // MeshOptions::encoded
   const PlyElement* element = nullptr;
   size_t row = 0;
 
@@ -134,9 +135,11 @@ struct Body {
         values[i] = take(e.properties[i].type);
   }
 
-  static Rgb value_of(const PlyElement& e, const PlyGroup& group, const std::vector<double>& values) {
+  Rgb value_of(const PlyElement& e, const PlyGroup& group, const std::vector<double>& values) const {
     const auto part = [&](size_t i) {
-      return values[i] / (group.color ? ply_largest[size_t(e.properties[i].type)] : 1);
+      const PlyType type = e.properties[i].type;
+      const double x = values[i] / (group.color || encoded ? ply_largest[size_t(type)] : 1);
+      return encoded && is_integer(type) ? from_srgb(x) : x;
     };
     return Rgb(part(group.parts[0]), part(group.parts[1]), part(group.parts[2]));
   }
@@ -194,8 +197,8 @@ struct Body {
 };
 
 template <PlyFormat F>
-Mesh read_body(const PlyHeader& header, const char* p, const char* end, const std::string& file) {
-  Body<F> body{p, end, file};
+Mesh read_body(const PlyHeader& header, const char* p, const char* end, const std::string& file, bool encoded) {
+  Body<F> body{p, end, file, encoded};
   Mesh mesh;
   Polygons polygons;
   for (const PlyElement& e : header.elements) {
@@ -237,7 +240,7 @@ Mesh parse_ply(std::span<const std::byte> bytes, const std::string& name, const 
   const auto read = header.format == PlyFormat::ascii    ? read_body<PlyFormat::ascii>
                     : header.format == PlyFormat::little ? read_body<PlyFormat::little>
                                                          : read_body<PlyFormat::big>;
-  Mesh mesh = read(header, p, end, name);
+  Mesh mesh = read(header, p, end, name, options.encoded);
   complete(mesh, options, name);
   return mesh;
 }

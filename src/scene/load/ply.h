@@ -17,7 +17,7 @@ enum class PlyType : uint8_t { i8, u8, i16, u16, i32, u32, f32, f64 };
 
 inline constexpr std::array<size_t, 8> ply_sizes{1, 1, 2, 2, 4, 4, 4, 8};
 inline constexpr std::array<double, 8> ply_largest{127,        255,        32767, 65535,
-                                                   2147483647, 4294967295, 1,     1};  // as a colour: 1
+                                                   2147483647, 4294967295, 1,     1};  // what stands for 1
 
 inline size_t size_of(PlyType t) { return ply_sizes[size_t(t)]; }
 inline bool is_integer(PlyType t) { return t < PlyType::f32; }
@@ -65,7 +65,7 @@ struct PlyHeader {
 struct PlyGroup {
   std::string name;
   std::array<size_t, 3> parts{};  // indices of properties; a single number is all three
-  bool color = false;             // integers are parts of 1
+  bool color = false;             // integers are parts of 1, whatever MeshOptions say
 };
 
 /// Reads up to the line after end_header, where p is then. Throws Error with file and line.

@@ -147,9 +147,9 @@ void file_mesh(Params& p, Shape& shape, const std::string& key, MeshOptions opti
   options.flip_v = boolean(p, "flip_tex_coords", options.flip_v);
   Mesh mesh;
   try {
-    const std::string exact =
-        fmt::format("{}|{}{}{}{}{}{}|{}|{}", key, options.face_normals, options.flip_normals, options.flip_v,
-                    options.srgb, options.weld, options.apart, options.group, options.max_smooth_angle);
+    const std::string exact = fmt::format("{}|{}{}{}{}{}{}{}|{}|{}", key, options.face_normals, options.flip_normals,
+                                          options.flip_v, options.srgb, options.encoded, options.weld, options.apart,
+                                          options.group, options.max_smooth_angle);
     const int left = --p.loader.mesh_uses[key];
     if (take_placed(p.loader, exact, m, mesh)) {
       shape.mesh = add_mesh(p, std::move(mesh));
@@ -198,6 +198,7 @@ void ply(Params& p, Shape& shape, const MeshPart&) {
   const std::string path = file(p, "filename");
   MeshOptions options;
   options.srgb = p.loader.document.old && boolean(p, "srgb", true);
+  options.encoded = !p.loader.document.old;
   file_mesh(p, shape, path, options, [&](const MeshOptions& o) {
     Mesh mesh = read_ply(path, o);
     if (o.srgb) decode(mesh.colors);

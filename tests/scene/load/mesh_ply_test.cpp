@@ -104,6 +104,26 @@ TEST(MeshPly, attributes_of_vertices_and_faces) {
   EXPECT_EQ(cut.attributes[1].values, (std::vector{Rgb(5), Rgb(6)}));
 }
 
+// Mitsuba 2 and 3: whatever they are of; floats stay.
+TEST(MeshPly, integers_may_be_encoded_parts) {
+  const std::string vertex = xyz +
+                             "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty short step_x\n"
+                             "property short step_y\nproperty short step_z\nproperty float heat_0\n";
+  const std::string faces =
+      "element face 1\nproperty list uchar int vertex_indices\nproperty uint id_0\nproperty float cost_0\n";
+  const std::string body =
+      "0 0 0 128 255 0 -32767 0 16384 7\n1 0 0 0 0 0 0 0 0 7\n0 1 0 0 0 0 0 0 0 7\n3 0 1 2 4294967295 9\n";
+  const auto near = [](const Rgb& a, const Rgb& b) { return max_component(glm::abs(a - b)) < 1e-4f; };
+  for (const bool encoded : {false, true}) {
+    const Mesh m = ply(ascii(vertex, faces, body), {.face_normals = true, .encoded = encoded});
+    EXPECT_TRUE(near(m.colors[0], encoded ? Rgb(0.21586f, 1, 0) : Rgb(128 / 255.0f, 1, 0)));
+    EXPECT_TRUE(near(m.attributes[0].values[0], encoded ? Rgb(-1 / 12.92f, 0, 0.21406f) : Rgb(-32767, 0, 16384)));
+    EXPECT_EQ(m.attributes[1].values[0], Rgb(7));
+    EXPECT_EQ(m.attributes[2].values[0], encoded ? Rgb(1) : Rgb(4294967295.0f));
+    EXPECT_EQ(m.attributes[3].values[0], Rgb(9));
+  }
+}
+
 TEST(MeshPly, polygons_and_quads) {
   const Mesh m = ply(ascii(xyz, "element face 2\nproperty list uchar int vertex_indices\n",
                            "0 0 0\n4 0 0\n1 1 0\n0 4 0\n4 0 1 2 3\n2 0 1\n", 4));
