@@ -202,6 +202,8 @@ Rgb eval(const Scene& scene, const Slot& slot, const Surface& at) {
       return eval_attribute(scene, t, at);
     case TextureKind::limit:
       return glm::clamp(eval(scene, t.color0, at), Rgb(0), Rgb(1));
+    case TextureKind::average:
+      return averaged(eval(scene, t.color0, at));
   }
   return Rgb(0);
 }
@@ -223,6 +225,7 @@ Vec2 eval_gradient(const Scene& scene, const Slot& slot, const Surface& at) {
     case TextureKind::mesh_attribute:
       return {0, 0};
     case TextureKind::limit:
+    case TextureKind::average:
       return eval_gradient(scene, t.color0, at);
   }
   return {0, 0};
@@ -246,6 +249,8 @@ Rgb mean(const Scene& scene, const Slot& slot) {
       return mean_attribute(scene, t);
     case TextureKind::limit:
       return glm::clamp(mean(scene, t.color0), Rgb(0), Rgb(1));
+    case TextureKind::average:
+      return averaged(mean(scene, t.color0));
   }
   return Rgb(0);
 }
@@ -266,6 +271,8 @@ Rgb maximum(const Scene& scene, const Slot& slot, const Mesh* mesh) {
       return largest_value(t, mesh);
     case TextureKind::limit:
       return glm::min(maximum(scene, t.color0, mesh), Rgb(1));
+    case TextureKind::average:
+      return averaged(maximum(scene, t.color0, mesh));
   }
   return Rgb(0);
 }

@@ -51,7 +51,7 @@ inline Rgb texel(const Image& image, int x, int y, Channel channel = Channel::co
 }
 
 enum class Wrap : uint8_t { repeat, mirror, clamp, zero, one };
-enum class TextureKind : uint8_t { bitmap, checkerboard, grid, scale, mesh_attribute, limit };
+enum class TextureKind : uint8_t { bitmap, checkerboard, grid, scale, mesh_attribute, limit, average };
 
 struct Texture {
   TextureKind kind = TextureKind::bitmap;
@@ -62,18 +62,22 @@ struct Texture {
   uint32_t image = none;  ///< bitmap: index into Scene::images
   Mat3 to_uv{1};          ///< applied to (u, v, 1) before the look-up
   Slot color0{0.4f};  ///< checkerboard, where floor(2u) + floor(2v) is even; grid, its ground; scale: the nested slot;
-                      ///< limit: what is kept from 0 to 1
+                      ///< limit: what is kept from 0 to 1; average: what is made grey
   Slot color1{0.2f};  ///< checkerboard, elsewhere; grid, its lines; scale: the factor
   float line_width = 0;   ///< grid: how far a line reaches to either side of a whole number
   std::string attribute;  ///< mesh_attribute: its name; black where the mesh has none of this name
 };
+
+/// A grey of the mean of red, green and blue; exactly itself where it is grey.
+inline Rgb averaged(const Rgb& c) { return c.x == c.y && c.y == c.z ? c : Rgb((c.x + c.y + c.z) / 3); }
 
 /// Value of a slot at a surface point; linear RGB. Bilinear unless the texture says nearest.
 Rgb eval(const Scene& scene, const Slot& slot, const Surface& at);
 /// The same reduced to one number: the only channel, or the luminance of three.
 float eval_scalar(const Scene& scene, const Slot& slot, const Surface& at);
 /// Derivative of eval_scalar to u and v at the point (for bump maps), per unit of the mesh's uv; bitmaps as if
-/// bilinear, products of colours as if of their luminances, limits as if not reached.
+/// bilinear, products of colours as if of their luminances, limits as if not reached, averages
+/// as if luminances.
 Vec2 eval_gradient(const Scene& scene, const Slot& slot, const Surface& at);
 /// Mean value over the unit square of uv; exact for constants and bitmaps that fill it.
 Rgb mean(const Scene& scene, const Slot& slot);

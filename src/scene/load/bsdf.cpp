@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "ajar/scene/bsdf/lobes.h"
 #include "loader.h"
@@ -57,7 +58,7 @@ void limit_width(Params& p, const char* name, const Slot& s) {
 
 // Microfacets are never smoother than min_alpha.
 Slot roughness(Params& p, const char* name, const Slot& otherwise) {
-  Slot s = slot(p, {name}, otherwise, Colour::ratio);
+  Slot s = number_slot(p, name, otherwise);
   if (s.texture == none && !(luminance(s.value) > 0)) s.value = Rgb(min_alpha);
   limit_width(p, name, s);
   return s;
@@ -76,7 +77,7 @@ void diffuse(Params& p, Material& m) {
 
 void roughdiffuse(Params& p, Material& m) {
   diffuse(p, m);
-  m.alpha_u = slot(p, {"alpha"}, 0.2f, Colour::ratio);
+  m.alpha_u = number_slot(p, "alpha", 0.2f);
   limit_width(p, "alpha", m.alpha_u);
   m.simple = boolean(p, "use_fast_approx", false);
 }
@@ -155,13 +156,13 @@ void two_colours(Params& p, Material& m) {
 
 void phong(Params& p, Material& m) {
   two_colours(p, m);
-  m.exponent = slot(p, {"exponent"}, 30.0f, Colour::ratio);
+  m.exponent = number_slot(p, "exponent", 30.0f);
 }
 
 void ward(Params& p, Material& m) {
   two_colours(p, m);
   const auto width = [&](const char* name, const Slot& otherwise) {
-    const Slot s = slot(p, {name}, otherwise, Colour::ratio);
+    const Slot s = number_slot(p, name, otherwise);
     if (s.texture == none && !(luminance(s.value) > 0))
       fail(p.loader, p.node, fmt::format("{} should be greater than 0", name));
     limit_width(p, name, s);
@@ -194,23 +195,37 @@ void principled(Params& p, Material& m) {
 
 void null(Params&, Material&) {}
 
-// The nested bsdfs: as many as asked for, in the order of the file, or of their names where all have one.
+// b2 before b10: what stands before a name's last digits comes first, then their number.
+bool comes_first(const std::string& a, const std::string& b) {
+  const auto parts = [](std::string_view name) {
+    const size_t digits = name.find_last_not_of("0123456789") + 1;
+    std::string_view number = name.substr(digits);
+    number.remove_prefix(std::min(number.find_first_not_of('0'), number.size()));
+    return std::tuple(name.substr(0, digits), number.size(), number);
+  };
+  return parts(a) < parts(b);
+}
+
+// The nested bsdfs: as many as asked for, in the order of the file, or, but for version 0.x, of their names where all
+// have one.
 void take_nested(Params& p, Material& m, size_t low, size_t high) {
   std::vector<std::pair<std::string, const Node*>> list;
-  bool named = true;
+  bool named = !p.loader.document.old;
   for (size_t i = 0; i < p.node.children.size(); ++i) {
     const Node& meant = follow(p.loader, p.node.children[i]);
     if (meant.tag != "bsdf") continue;
     p.used[i] = true;
     named &= !p.node.children[i].name.empty();
-    list.emplace_back(p.node.children[i].name, &meant);
+    list.emplace_back(p.node.children[i].named, &meant);
   }
   if (list.size() < low || list.size() > high)
     fail(p.loader, p.node,
          fmt::format("needs {} nested bsdf{}, has {}",
                      low == high ? fmt::format("{}", low) : fmt::format("{} to {}", low, high), high == 1 ? "" : "s",
                      list.size()));
-  if (named) std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  if (named)
+    std::stable_sort(list.begin(), list.end(),
+                     [](const auto& a, const auto& b) { return comes_first(a.first, b.first); });
   for (size_t i = 0; i < list.size(); ++i) m.nested[i] = load_bsdf(p.loader, *list[i].second);
 }
 
@@ -247,7 +262,7 @@ void mask(Params& p, Material& m) {
 }
 
 void blend(Params& p, Material& m) {
-  m.weight = main_slot(p, {"weight"}, 0.5f, Colour::reflectance);
+  m.weight = as_number(p, main_slot(p, {"weight"}, 0.5f, Colour::reflectance));
   take_nested(p, m, 2, 2);
 }
 

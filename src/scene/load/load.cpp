@@ -75,13 +75,20 @@ void add_sensor(Scene& scene, const std::string& name) {
                         ": the scene has no camera: all of it is seen, along +z; add <sensor type=\"perspective\">");
 }
 
+// Whether the file speaks of a light, even if it was left out.
+bool names_emitter(const Node& node) {
+  return std::any_of(node.children.begin(), node.children.end(), [](const Node& child) {
+    return child.tag == "emitter" || child.tag == "luminaire" || names_emitter(child);
+  });
+}
+
 // What Mitsuba 0.x lights a scene with that has no light.
 constexpr const char* usual_light =
     "<scene version='0.6.0'><emitter type='sunsky'><transform name='toWorld'><rotate y='1' angle='-120'/></transform>"
     "<float name='scale' value='2'/><float name='sunRadiusScale' value='15'/></emitter></scene>";
 
 void light_up(Loader& loader, const std::string& name) {
-  if (!loader.document.old) {
+  if (!loader.document.old || names_emitter(loader.document.root)) {
     loader.scene.notes.push_back(name + ": the scene has no light: the image will be black");
     return;
   }

@@ -1,9 +1,17 @@
 #include "parts.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace ajar {
 namespace {
+
+// Of several bsdfs Mitsuba 0.x takes the last, later versions none.
+void note_several(Params& p, const Node& node, const char* what) {
+  if (!p.loader.document.old) fail(p.loader, node, fmt::format("{}; keep one of them", what));
+  note(p.loader, node, fmt::format("{}: the last one counts", what));
+}
 
 // The faces that no bsdf is for; all of them where there is no other part.
 std::vector<MeshPart> with_rest(Params& p, std::vector<MeshPart> parts, const Node* bsdf) {
@@ -23,7 +31,7 @@ std::vector<MeshPart> parts_by_name(Params& p) {
   for (const Node& child : p.node.children) {
     const Node& meant = follow(p.loader, child);
     if (meant.tag != "bsdf") continue;
-    if (child.named.empty() && rest != nullptr) fail(p.loader, child, "is the second bsdf without a name");
+    if (child.named.empty() && rest != nullptr) note_several(p, child, "is the second bsdf without a name");
     if (child.named.empty()) {
       rest = &meant;
       continue;
@@ -47,8 +55,8 @@ std::vector<MeshPart> parts_of(Params& p) {
   const std::vector<const Node*> bsdfs = nested(p, "bsdf");
   const bool several = bsdfs.size() > 1;
   if (p.node.type == "obj" && (several || (!bsdfs.empty() && goes_by_name(p)))) return parts_by_name(p);
-  if (bsdfs.size() > 1) fail(p.loader, p.node, "has more than one bsdf; keep one of them");
-  return with_rest(p, {}, bsdfs.empty() ? nullptr : bsdfs.front());
+  if (several) note_several(p, p.node, "has more than one bsdf");
+  return with_rest(p, {}, bsdfs.empty() ? nullptr : bsdfs.back());
 }
 
 uint32_t material_of(Params& p, const MeshPart& part, bool emits) {

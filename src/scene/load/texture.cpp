@@ -141,6 +141,11 @@ uint32_t add_limited(Loader& loader, const Node& node, Texture&& texture) {
   return add_texture(loader, node, std::move(limit));
 }
 
+bool is_grey(const Scene& scene, const Texture& t) {
+  if (t.kind == TextureKind::average) return true;
+  return t.kind == TextureKind::bitmap && (scene.images[t.image].channels == 1 || t.channel != Channel::color);
+}
+
 const Image* find_value(const std::map<std::string, Image>& images, const std::string& key) {
   const auto found = images.find(key);
   return found == images.end() ? nullptr : &found->second;
@@ -248,6 +253,23 @@ uint32_t load_texture(Loader& loader, const Node& node, Colour kind) {
 Slot slot(Params& params, std::initializer_list<const char*> names, const Slot& otherwise, Colour kind) {
   const Node* node = find(params, names);
   return node == nullptr ? otherwise : slot_of(params.loader, *node, kind);
+}
+
+Slot as_number(Params& params, const Slot& s) {
+  const Scene& scene = params.loader.scene;
+  if (!params.loader.document.old) return s;
+  if (s.texture == none) return averaged(s.value);
+  if (is_grey(scene, scene.textures[s.texture])) return s;
+  Texture t;
+  t.kind = TextureKind::average;
+  t.color0 = s;
+  Slot grey;
+  grey.texture = add_texture(params.loader, params.node, std::move(t));
+  return grey;
+}
+
+Slot number_slot(Params& params, const char* name, const Slot& otherwise) {
+  return as_number(params, slot(params, {name}, otherwise, Colour::ratio));
 }
 
 Slot product(Params& params, const Slot& a, const Slot& b) {

@@ -69,7 +69,7 @@ auto told_at(const Reader& r, const Source& s, const pugi::xml_node& node, const
 std::string known_parameters(const Reader& r) {
   std::string list;
   for (const auto& [name, value] : r.parameters) list += (list.empty() ? "" : ", ") + name;
-  return list.empty() ? "it has none" : "known are " + list;
+  return list.empty() ? "no parameter is known" : "known are " + list;
 }
 
 void parse(const Document& document, pugi::xml_document& xml, const Source& s, const std::string& name) {
@@ -137,6 +137,7 @@ const std::pair<const std::string, std::string>* parameter_at(const std::map<std
 }
 
 // Puts in the value of every $name. After \ a dollar is one, but for version 0.x, where that is a folder of Windows.
+// There a name without a value stays where a [ stands beside it.
 std::string substitute(Reader& r, const Source& s, const pugi::xml_node& node, const char* value) {
   std::string out;
   std::string_view rest = value;
@@ -152,6 +153,10 @@ std::string substitute(Reader& r, const Source& s, const pugi::xml_node& node, c
     if (found == nullptr) {
       if (r.looked.insert("").second) look_ahead(r, r.root, 0);
       found = parameter_at(r.later, rest);
+    }
+    if (found == nullptr && r.document.old && std::string_view(value).find('[') != std::string_view::npos) {
+      out += '$';
+      continue;
     }
     if (found == nullptr) {
       size_t n = 0;

@@ -207,7 +207,29 @@ TEST(Bsdf, Blend) {
   EXPECT_FLOAT_EQ(s.materials[2].weight.value.x, 0.25f);
   s = load_inside(bsdf("blendbsdf", "<bsdf name='bsdf_1' type='plastic'/><bsdf name='bsdf_0' type='diffuse'/>"));
   EXPECT_EQ(s.materials[s.materials[2].nested[0]].kind, MaterialKind::diffuse);
+  const std::string ten = bsdf("blendbsdf", "<bsdf name='b10' type='plastic'/><bsdf name='b2' type='diffuse'/>");
+  s = load_inside(ten);
+  EXPECT_EQ(s.materials[s.materials[2].nested[0]].kind, MaterialKind::diffuse);
+  s = load_inside(ten, {}, "0.6.0");
+  EXPECT_EQ(s.materials[s.materials[2].nested[0]].kind, MaterialKind::plastic);
   EXPECT_SAYS(error_of(bsdf("blendbsdf", bsdf("diffuse"))), "needs 2 nested bsdfs, has 1");
+}
+
+// The luminance of red is 0.2126.
+TEST(Bsdf, ColoursForNumbersAreAveragedInOldScenes) {
+  const std::string red = "<rgb name='color0' value='.9 0 0'/><rgb name='color1' value='.9 0 0'/>";
+  const auto red_for = [&](const std::string& name) {
+    return fmt::format("<texture name='{}' type='checkerboard'>{}</texture>", name, red);
+  };
+  for (const bool old : {false, true}) {
+    const Scene s = load_inside(bsdf("blendbsdf", red_for("weight") + bsdf("roughconductor", red_for("alpha")) +
+                                                      bsdf("phong", red_for("exponent"))),
+                                {}, old ? "0.6.0" : "3.0.0");
+    for (const Slot& slot : {s.materials[0].alpha_v, s.materials[1].exponent, s.materials[2].weight}) {
+      EXPECT_NEAR(eval_scalar(s, slot, {}), old ? 0.3 : 0.9 * 0.2126, 1e-4);
+      EXPECT_NEAR(luminance(mean(s, slot)), old ? 0.3 : 0.9 * 0.2126, 1e-4);
+    }
+  }
 }
 
 TEST(Bsdf, Mixture) {

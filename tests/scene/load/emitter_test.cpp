@@ -288,6 +288,12 @@ TEST(Emitters, DaylightWhereOldScenesHaveNone) {
   EXPECT_EQ(s.lights[1].kind, LightKind::sun);
   EXPECT_TRUE(says(s.notes, "sun and sky were added"));
   EXPECT_EQ(load_inside("<emitter type='point'/>", {}, "0.6.0").lights.size(), 1u);
+  // not where one was left out
+  for (const char* text : {"<emitter type='ies'/>", "<shape type='hair'><emitter type='area'/></shape>"}) {
+    const Scene dark = load_inside(text, lenient(), "0.6.0");
+    EXPECT_TRUE(dark.lights.empty()) << text;
+    EXPECT_TRUE(says(dark.notes, "the image will be black")) << text;
+  }
 }
 
 TEST(Emitters, UnknownOnes) {

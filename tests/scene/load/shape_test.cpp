@@ -131,6 +131,11 @@ TEST(Shapes, Materials) {
   s = load_inside(shape("sphere", "<bsdf name='bsdf' type='null'/>"));
   EXPECT_EQ(s.materials[s.shapes[0].material].kind, MaterialKind::null);
   EXPECT_SAYS(error_of(shape("sphere", "<bsdf type='null'/><bsdf type='null'/>")), "more than one bsdf");
+  s = load_inside(shape("sphere", "<bsdf type='null'/><bsdf type='plastic'/>"), {}, "0.6.0");
+  EXPECT_EQ(s.materials[s.shapes[0].material].kind, MaterialKind::plastic);
+  EXPECT_TRUE(says(s.notes, "has more than one bsdf: the last one counts"));
+  s = load_inside(shape("obj", file("halves.obj") + "<bsdf type='null'/><bsdf type='plastic'/>"), {}, "0.6.0");
+  EXPECT_EQ(s.materials[s.shapes.at(0).material].kind, MaterialKind::plastic);
 }
 
 // halves.obj: two triangles of usemtl "Left One" at x < 0, one of "right" at x > 0.

@@ -99,6 +99,7 @@ TEST(Parameters, UnknownOnesAreErrors) {
   std::string e = error_of("<default name='known' value='1'/>\n<integrator type='$nobody'/>");
   EXPECT_SAYS(e, "test.xml:3: <integrator>: the parameter $nobody has no value");
   EXPECT_SAYS(e, "known are known");
+  EXPECT_SAYS(error_of("<integrator type='$nobody'/>"), "value=\"...\"/>; no parameter is known");
   e = error_of("<default name='known' value='1'/>", define("unknown", "2"));
   EXPECT_SAYS(e, "-D unknown");
   EXPECT_SAYS(e, "known are known");
@@ -108,6 +109,12 @@ TEST(Parameters, UnknownOnesAreErrors) {
 TEST(Parameters, ADollarAloneNamesNone) {
   EXPECT_EQ(error_of("<bsdf type='$'/>"),
             "test.xml:2: <bsdf>: a $ begins the name of a parameter, and none follows; leave it out");
+}
+
+TEST(Parameters, ADollarBesideABracketStaysInOldScenes) {
+  const std::string text = "<default name='b' value='c'/><shape type='sphere' id='$a[$b] $'/>";
+  EXPECT_EQ(load_inside(text, {}, "0.6.0").shapes[0].name, "$a[c] $");
+  EXPECT_SAYS(error_of(text), "the parameter $a has no value");
 }
 
 TEST(Parameters, ExplosionIsStopped) {
