@@ -84,6 +84,17 @@ void roughdiffuse(Params& p, Material& m) {
 
 void difftrans(Params& p, Material& m) { m.transmittance = main_slot(p, {"transmittance"}, 0.5f, Colour::reflectance); }
 
+// eta or k, which do not vary over a surface.
+Rgb index_of_metal(Params& p, const char* name, const Rgb& otherwise) {
+  const Node* node = find(p, {name});
+  if (node == nullptr || !is_texture(meant_by(p.loader, *node))) return colour(p, name, otherwise, Colour::ratio);
+  unsupported(p.loader, *node,
+              fmt::format("has to be one colour here, not a texture; write <rgb name=\"{}\" value=\"...\"/>", name),
+              "its mean in its place");
+  const Rgb found = mean(p.loader.scene, slot_of(p.loader, *node, Colour::ratio));
+  return is_finite(found) ? found : otherwise;
+}
+
 void conductor(Params& p, Material& m) {
   m.specular = main_slot(p, {"specular_reflectance"}, 1.0f, Colour::reflectance);
   const bool given = has(p, "eta") || has(p, "k");
@@ -97,8 +108,8 @@ void conductor(Params& p, Material& m) {
     metal = find_metal(usual);
   }
   const float outside = float(index_of(p, "ext_eta", p.loader.document.old ? air : 1));
-  m.eta = colour(p, "eta", metal->eta, Colour::ratio) / outside;
-  m.k = colour(p, "k", metal->k, Colour::ratio) / outside;
+  m.eta = index_of_metal(p, "eta", metal->eta) / outside;
+  m.k = index_of_metal(p, "k", metal->k) / outside;
 }
 
 void roughconductor(Params& p, Material& m) {
@@ -419,8 +430,9 @@ uint32_t load_bsdf(Loader& loader, const Node& node) {
     m.kind = reader->kind;
     Params p(loader, node);
     reader->read(p, m);
-    finish(p, {"specular_sampling_weight", "specular_sampling", "specular_sampling_rate", "clearcoat_sampling_rate",
-               "diffuse_reflectance_sampling_rate", "spec_trans_sampling_rate", "sample_visible", "id"});
+    finish(p, {"specular_sampling_weight", "specular_sampling", "main_specular_sampling_rate",
+               "clearcoat_sampling_rate", "diffuse_reflectance_sampling_rate", "specular_reflectance_sampling_rate",
+               "specular_transmittance_sampling_rate", "diffuse_transmittance_sampling_rate", "sample_visible", "id"});
     index = add_material(loader, node, m);
   }
   loader.bsdfs.emplace(&node, index);

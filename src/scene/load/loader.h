@@ -133,6 +133,8 @@ DVec3 across(const DVec3& z, bool old);
 /// Axes equal in length and at right angles, to a relative 1e-4.
 bool is_similarity(const DMat4& m);
 
+/// What stands for a colour or texture: refs followed, and of a d65 what is nested in it, as in Mitsuba's RGB modes.
+const Node& meant_by(Loader& loader, const Node& node);
 /// <rgb>, <srgb>, <spectrum>, <blackbody>, <float>: linear RGB, not negative.
 Rgb colour_of(Loader& loader, const Node& node, Colour kind);
 bool is_texture(const Node& node);

@@ -122,6 +122,19 @@ double kelvin_of(const Loader& loader, const Node& node, std::string_view value)
   return *kelvin;
 }
 
+// The texture or spectrum inside a d65, if any; its color is none.
+const Node* lit(Params& p) {
+  const Node* found = nullptr;
+  for (size_t i = 0; i < p.node.children.size(); ++i) {
+    const Node &child = p.node.children[i], &meant = follow(p.loader, child);
+    if (child.name == "color" || (!is_texture(meant) && (meant.tag != "spectrum" || meant.type.empty()))) continue;
+    if (found != nullptr) fail(p.loader, child, "is the second texture or spectrum in a d65; leave one of them out");
+    found = &child;
+    p.used[i] = true;
+  }
+  return found;
+}
+
 // values and wavelengths in separate strings (Mitsuba 2, 3)
 Rgb tabulated(Params& p, Colour kind) {
   const auto values = to_numbers(text(p, "values", text(p, "value", "")));
@@ -195,10 +208,22 @@ Rgb colour_of(Loader& loader, const Node& node, Colour kind) {
   fail(loader, node, "a number, <rgb>, <spectrum> or <texture> is expected here");
 }
 
+const Node& meant_by(Loader& loader, const Node& node) {
+  const Node& meant = follow(loader, node);
+  if (meant.tag != "spectrum" || meant.type != "d65") return meant;
+  Params p(loader, meant);
+  const Node* inner = lit(p);
+  if (inner == nullptr) return meant;
+  if (has(p, "color")) fail(loader, meant, "has both a color and a texture or spectrum; leave one of them out");
+  finish(p);
+  const Open open(loader, meant);
+  return meant_by(loader, *inner);
+}
+
 Rgb colour(Params& params, const char* name, const Rgb& otherwise, Colour kind) {
   const Node* node = find(params, {name});
   if (node == nullptr) return otherwise;
-  const Node& meant = follow(params.loader, *node);
+  const Node& meant = meant_by(params.loader, *node);
   if (is_texture(meant)) fail(params.loader, *node, "has to be one colour here, not a texture");
   return colour_of(params.loader, meant, kind);
 }

@@ -113,7 +113,8 @@ Texture bitmap(Params& p, Colour kind) {
   Texture t;
   t.flip_v = false;  // v = 0 is the top row, as in Mitsuba; obj files are turned when they are read
   const std::string path = file(p, "filename");
-  t.nearest = choice(p, "filter_type", "bilinear", {"nearest", "bilinear", "trilinear", "ewa"}) == "nearest";
+  t.nearest =
+      choice(p, "filter_type", "bilinear", {"nearest", "bilinear", "trilinear", "ewa", "anisotropic"}) == "nearest";
   t.wrap_u = t.wrap_v = wrap_of(p, "wrap_mode", Wrap::repeat);
   t.wrap_u = wrap_of(p, "wrap_mode_u", t.wrap_u);
   t.wrap_v = wrap_of(p, "wrap_mode_v", t.wrap_v);
@@ -283,7 +284,7 @@ Slot product(Params& params, const Slot& a, const Slot& b) {
 }
 
 Slot slot_of(Loader& loader, const Node& node, Colour kind) {
-  const Node& meant = follow(loader, node);
+  const Node& meant = meant_by(loader, node);
   if (!is_texture(meant)) return Slot(colour_of(loader, meant, kind));
   Slot s;
   s.texture = load_texture(loader, meant, kind);

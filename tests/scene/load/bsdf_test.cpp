@@ -64,7 +64,11 @@ TEST(Bsdf, Conductor) {
   EXPECT_RGB(last(bsdf("conductor", word("material", "Au_palik"))).k, 3.983, 2.386, 1.603, 1e-3);
   EXPECT_SAYS(error_of(bsdf("conductor", word("material", "Xx"))), "unknown material \"Xx\"; known are none, a-C, Ag");
   EXPECT_TRUE(says(load_inside(bsdf("conductor", word("material", "Xx")), lenient()).notes, "none in its place"));
-  EXPECT_SAYS(error_of(bsdf("conductor", texture("eta"))), "has to be one colour");
+  EXPECT_SAYS(error_of(bsdf("conductor", texture("eta"))),
+              "has to be one colour here, not a texture; write <rgb name=\"eta\" value=\"...\"/>; with --lenient");
+  m = last(bsdf("roughconductor", texture("eta") + texture("k")), lenient());
+  EXPECT_RGB(m.eta, 0.3, 0.3, 0.3, 1e-6);
+  EXPECT_RGB(m.k, 0.3, 0.3, 0.3, 1e-6);
 }
 
 TEST(Bsdf, MicrofacetParameters) {
@@ -173,6 +177,9 @@ TEST(Bsdf, Principled) {
   EXPECT_FLOAT_EQ(m.sheen.value.x, 0.8f);
   EXPECT_NE(m.metallic.texture, none);
   EXPECT_NEAR(m.ior, 1.5, 1e-5);  // 4 % at normal incidence
+  const Scene hinted = load_inside(
+      bsdf("principled", number("main_specular_sampling_rate", 2) + number("diffuse_reflectance_sampling_rate", 2)));
+  EXPECT_FALSE(says(hinted.notes, "sampling_rate"));
   EXPECT_SAYS(error_of(bsdf("principled", number("specular", -1))), "specular should be");
   EXPECT_SAYS(error_of(bsdf("principled", number("eta", 0.5))), "eta should be");
 }

@@ -135,6 +135,18 @@ TEST(Colour, SpectrumPlugins) {
   EXPECT_RGB(reflectance(plugin("rawconstant", "<rgb name='value' value='.1 .2 .3'/>")), 0.1, 0.2, 0.3, 1e-6);
   EXPECT_RGB(reflectance(plugin("rawconstant", "<vector name='value' x='.1' y='.2' z='.3'/>")), 0.1, 0.2, 0.3, 1e-6);
   EXPECT_RGB(reflectance(plugin("d65", "<float name='scale' value='.5'/>")), 0.5, 0.5, 0.5, 1e-6);
+  const std::string tint = "<spectrum type='srgb'><rgb name='color' value='.1 .2 .3'/></spectrum>";
+  const std::string scaled = "<float name='scale' value='.5'/>";
+  EXPECT_RGB(reflectance(plugin("d65", tint + scaled)), 0.1, 0.2, 0.3, 1e-6);  // not scaled, as in Mitsuba
+  EXPECT_RGB(reflectance(plugin("d65", "<spectrum type='d65'>" + tint + "</spectrum>")), 0.1, 0.2, 0.3, 1e-6);
+  EXPECT_RGB(reflectance("<spectrum type='uniform' id='t'><float name='value' value='.3'/></spectrum>" +
+                         plugin("d65", "<ref id='t'/>")),
+             0.3, 0.3, 0.3, 1e-6);
+  EXPECT_NE(load_inside("<shape type='sphere'><emitter type='area'><spectrum name='radiance' type='d65'><texture "
+                        "type='checkerboard'/></spectrum></emitter></shape>")
+                .lights[0]
+                .radiance.texture,
+            none);
   EXPECT_RGB(reflectance(plugin("irregular",
                                 "<string name='wavelengths' value='300, 900'/>"
                                 "<string name='values' value='.5, .5'/>")),
@@ -168,6 +180,18 @@ TEST(Colour, WrongOnesAreErrors) {
   EXPECT_SAYS(error("<spectrum name='reflectance' filename='fragment.xml'/>"), "wavelength and value");
   EXPECT_SAYS(error("<blackbody name='reflectance' temperature='-1'/>"), "temperature");
   EXPECT_SAYS(error("<point name='reflectance' x='1'/>"), "is expected here");
+}
+
+TEST(Colour, LightOfOneThingAlone) {
+  const auto error = [](const std::string& inside) {
+    return error_of("<emitter type='constant'><spectrum name='radiance' type='d65' id='l'>" + inside +
+                    "</spectrum></emitter>");
+  };
+  const std::string flat_one = "<spectrum type='uniform'/>";
+  EXPECT_SAYS(error("<rgb name='color' value='1'/>" + flat_one), "has both a color and a texture or spectrum");
+  EXPECT_SAYS(error(flat_one + flat_one), "is the second texture or spectrum in a d65");
+  EXPECT_SAYS(error("<texture type='checkerboard'/>"), "has to be one colour here, not a texture");
+  EXPECT_SAYS(error("<ref id='l'/>"), "contains itself");
 }
 
 TEST(Colour, NamesOfSubstances) {

@@ -56,6 +56,10 @@ TEST(TextureFile, WrapAndFilter) {
   t = with(bitmap("<string name='wrapModeU' value='mirror'/>")).textures[0];
   EXPECT_EQ(t.wrap_u, Wrap::mirror);
   EXPECT_EQ(t.wrap_v, Wrap::repeat);
+  const Scene anisotropic =
+      with(bitmap("<string name='filter_type' value='anisotropic'/><float name='max_anisotropy' value='8'/>"));
+  EXPECT_FALSE(anisotropic.textures[0].nearest);
+  EXPECT_FALSE(says(anisotropic.notes, "anisotropy"));
   EXPECT_SAYS(error_of("<bsdf type='diffuse'>" + bitmap("<string name='wrap_mode' value='twist'/>") + "</bsdf>"),
               "known are repeat, mirror, clamp, zero, one");
 }
