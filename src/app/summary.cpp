@@ -111,11 +111,12 @@ nlohmann::ordered_json summary(const Run& run, const RenderState& state) {
   if (run.options.noise > 0)
     j["noise"] = {{"target", run.options.noise}, {"reached", error.relmse <= run.options.noise}};
   if (run.planned) j["plan"] = to_json(run.plan);
-  if (const Plain& p = state.plain; p.passes > 0)
+  if (const Plain& p = state.plain; p.passes > 0 || p.merged > 0)
     j["path_tracing"] = {{"took_over", p.taken},
                          {"after_passes", p.passes},
                          {"error_after_equal_time", p.ratio},
-                         {"returned_passes", p.returned}};
+                         {"returned_passes", p.returned},
+                         {"merged_passes", p.merged}};
   if (!run.versus.integrator.empty()) j["versus"] = to_json(run.versus, state);
   add_account(j, state);
   return j;

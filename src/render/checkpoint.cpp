@@ -9,7 +9,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind checkpoint_kind = {"AJARck20", "checkpoint", "render once with --checkpoint",
+constexpr FileKind checkpoint_kind = {"AJARck21", "checkpoint", "render once with --checkpoint",
                                       "start again without --resume"};
 
 // One list of fields for both ways.
@@ -57,7 +57,7 @@ void plain_fields(Io& io, State& plain) {
   io.value(plain.pace), io.value(plain.guided_error), io.value(plain.plain_error);
   io.value(plain.missed), io.value(plain.rays), io.value(plain.seen.passes), io.array(plain.seen.sum),
       io.array(plain.seen.half);
-  io.value(plain.returned);
+  io.value(plain.returned), io.value(plain.merged);
   film_fields(io, plain.guided), io.value(plain.ledger);
 }
 

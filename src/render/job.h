@@ -144,7 +144,7 @@ Job plainly(Job job);
 /// After 4, 8, 16 ... 64 passes of a guided integrator: whether path tracing takes over, in RenderState::plain (L2);
 /// after 8, 16, 32 ..., where it did: whether it gives the render back, which then is as it was.
 /// Scratches' counters are left empty.
-void try_plain(const Job& job, const std::string& integrator, std::vector<Scratch>& scratches, RenderState& state);
+void try_plain(const Job& job, const RenderOptions& options, std::vector<Scratch>& scratches, RenderState& state);
 
 /// Beyond the first vertex at which a camera subpath is merged, it is merged with one light subpath in so many: those
 /// merges share what found the vertex, and more of them do not help.

@@ -34,13 +34,15 @@ constexpr double tame = 1.5, wild = 4;
 // Once path tracing took over, above this it gives the render back, until there are so many times the passes.
 constexpr double turned_wild = 3;
 constexpr uint32_t doubted = 64;
+// Share of a time limit, after which there is no time to begin an image anew.
+constexpr double early = 1.0 / 3;
 // Passes, at most, by which what it missed then counts: where the guided image is too bright by chance, it stays so.
 constexpr double rarest = 32;
 
 // CPU time of a ray with all that hangs on it [us], about: benchmarks/ray_cost.sh; that of photon maps of images larger
 // than those (docs/results/plan.md). Costs are reckoned from it, so that what is decided does not depend on the clock.
 constexpr double path_ray = 0.25;
-double ray_cost(const std::string& integrator) { return is_merging(integrator) ? 0.75 : 0.39; }
+double ray_cost(bool merges) { return merges ? 0.75 : 0.39; }
 
 uint64_t ray_count(const Counters& n) { return n.camera_rays + n.light_rays + n.shadow_rays; }
 
@@ -168,6 +170,15 @@ PassHalves operator-(PassHalves a, const PassHalves& b) {
   return a;
 }
 
+// Where path tracing does better than what merges, so does guided-bdpt, mostly, whose fields are there. It begins an
+// image of its own, without what merging blurred, and is looked at in turn.
+void leave_out_merging(RenderState& state) {
+  state.plain = {};
+  state.plain.merged = state.film.passes;
+  drop_passes(state.film);
+  state.stats.ledger = {};
+}
+
 // Path tracing that took over: its passes of the whole film are there to be held against the guided image, at no cost.
 // What lies in a few squares shows here, and what it finds in one sample of many thousands.
 void doubt_plain(bool merges, RenderState& state) {
@@ -234,9 +245,9 @@ Job plainly(Job job) {
   return job;
 }
 
-void try_plain(const Job& job, const std::string& integrator, std::vector<Scratch>& scratches, RenderState& state) {
+void try_plain(const Job& job, const RenderOptions& options, std::vector<Scratch>& scratches, RenderState& state) {
   Plain& plain = state.plain;
-  const bool merges = is_merging(integrator);
+  const bool merges = is_merging(options.integrator) && plain.merged == 0;
   if (plain.guided.passes > 0) return doubt_plain(merges, state);
   const Film& film = state.film;
   const bool due = std::has_single_bit(film.passes) && film.passes >= first_look && film.passes <= last_look;
@@ -247,7 +258,7 @@ void try_plain(const Job& job, const std::string& integrator, std::vector<Scratc
   const Job without = plainly(job);
   trace_to(film.passes, without, film, squares, scratches, plain);
   const Counters& n = state.stats.counters;
-  const double cost = ray_cost(integrator) * double(ray_count(n)) / double(n.camera_paths);
+  const double cost = ray_cost(merges) * double(ray_count(n)) / double(n.camera_paths);
   const double samples = double(plain.seen.passes) * double(plain.seen.sum.size());
   const double pace = std::clamp(cost * samples / (path_ray * double(plain.rays)), 1.0, fastest);
   trace_to(uint32_t(pace * film.passes / 2) * 2, without, film, squares, scratches, plain);
@@ -257,6 +268,7 @@ void try_plain(const Job& job, const std::string& integrator, std::vector<Scratc
   plain.missed =
       std::max(missed_by_plain(look, merges) * passes, 0.5 * plain.missed);  // twice the samples would have shown it
   decide(look.plain + plain.missed / passes, look.deviation, guided, passes, film.passes, plain);
+  if (plain.taken && merges && !is_over(options, state.stats, early)) return leave_out_merging(state);
   if (plain.settled) plain.seen = {};
   if (plain.taken && film.splats) plain.guided = film, plain.ledger = state.stats.ledger;
 }

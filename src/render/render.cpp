@@ -317,7 +317,6 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   RenderStats& stats = state.stats;
   Job job = make_job(scene, accel, options);
   const bool merging = integrator.merges && options.merge_radius > 0;
-  const bool joined = integrator.guided && integrator.light_half && !merging && !integrator.vpls;
   job.trace = integrator.trace, job.light_half = integrator.light_half;
   job.merges_alone = integrator.trace == trace_photon;
   if (job.merges_alone) job.final_gather = options.final_gather;
@@ -367,10 +366,11 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   while (!out_of_budget()) {
     const uint32_t from = film.chunks;
     if (leaving_out && state.learning.fields.generation >= blind_generations)
-      threads.run([&] { try_plain(job, options.integrator, scratches, state); });
+      threads.run([&] { try_plain(job, options, scratches, state); });
     const bool plain = leaving_out && state.plain.taken;
-    job.walk.merging =
-        merging && !plain ? merging_of(scene, options, film, equal_chunks(all, batch_chunks)) : Merging{};
+    const bool merges = merging && state.plain.merged == 0;
+    const bool joined = integrator.guided && integrator.light_half && !merges && !integrator.vpls;
+    job.walk.merging = merges && !plain ? merging_of(scene, options, film, equal_chunks(all, batch_chunks)) : Merging{};
     job.walk.merging.paths /= share_of(job, film);
     threads.run([&] {
       plan_pass(joined, plain, state, job);
@@ -379,7 +379,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
     const bool joins_vpls = integrator.vpls && !in_training(state.learning);
     const bool in_halves = integrator.light_half && !plain && !joins_vpls;
     const uint32_t most_at_once =
-        in_halves ? equal_chunks(all, merging ? batch_chunks : pool_chunks) : affordable_chunks(options, state);
+        in_halves ? equal_chunks(all, merges ? batch_chunks : pool_chunks) : affordable_chunks(options, state);
     const uint32_t count = std::min({batch_chunks, all - from, most_at_once});
     start(batch, count, in_halves);
     const Trace trace = integrator.vpls && !joins_vpls ? trace_bdpt : integrator.trace;

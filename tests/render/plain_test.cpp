@@ -295,6 +295,29 @@ TEST(Plain, IsTheSameToTheByte) {
   }
 }
 
+// What merged is in no image, and what goes on is looked at in turn.
+TEST(Plain, LeavesOutMergingFirst) {
+  Scene scene = stage(64);
+  finish(scene);
+  const Accel accel(scene);
+  const double truth = mean_of(rendered(scene, accel, options_of("path", 256)).film);
+  RenderOptions o = sparing("guided-vcm", 40);
+  const RenderState state = rendered(scene, accel, o);
+  EXPECT_GE(state.plain.merged, 4u);
+  EXPECT_GT(state.plain.passes, 0u);
+  EXPECT_EQ(state.film.passes, 40u);
+  EXPECT_EQ(state.film.dropped, state.plain.merged + blind_generations);
+  EXPECT_NEAR(mean_of(state.film), truth, 0.01 * truth);
+  for (const auto& row : state.stats.ledger.merges)
+    for (const StrategyCost& cost : row) EXPECT_EQ(cost.joins, 0u);
+  for (const uint32_t stop : {4u, 6u, 20u}) {
+    o.spp = stop;
+    const RenderState stopped = rendered(scene, accel, o);
+    o.spp = 40;
+    expect_same_bytes(state, resumed(scene, accel, o, stopped));
+  }
+}
+
 // Images without a square are not looked at.
 TEST(Plain, ImagesOfAnySize) {
   for (const auto& [width, height] : {std::pair{1, 1}, {7, 5}, {8, 8}, {9, 23}, {300, 3}}) {
@@ -304,7 +327,7 @@ TEST(Plain, ImagesOfAnySize) {
     finish(scene);
     const RenderState state = rendered(scene, Accel(scene), sparing("guided-vcm", 10));
     EXPECT_EQ(state.film.passes, 10u);
-    EXPECT_TRUE(width >= plain_side && height >= plain_side ? state.plain.passes > 0 : state.plain.passes == 0);
+    EXPECT_EQ(state.plain.passes + state.plain.merged > 0, width >= plain_side && height >= plain_side);
   }
 }
 

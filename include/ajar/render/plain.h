@@ -1,5 +1,6 @@
 // Enters: the image of a guided integrator after 4, 8, 16 ... passes, and some of its pixels as path tracing sees them.
-// Leaves: whether plain path tracing needs less time to equal error, so that it does the rest, or gives it back.
+// Leaves: whether plain path tracing needs less time to equal error, so that it does the rest, or gives it back; from
+//   what merges, guided-bdpt does the rest, and is looked at in turn.
 #pragma once
 
 #include <cstdint>
@@ -48,6 +49,7 @@ struct Plain {
   Film guided;            ///< the image when path tracing took over, while it may still be given back; else empty
   Ledger ledger;          ///< of that image
   uint32_t returned = 0;  ///< passes of path tracing that were dropped when it was
+  uint32_t merged = 0;    ///< passes that were dropped when merging was left out; 0: it was not
 };
 
 }  // namespace ajar
