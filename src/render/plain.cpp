@@ -35,7 +35,7 @@ constexpr double tame = 1.5, wild = 4;
 constexpr double turned_wild = 3;
 constexpr uint32_t doubted = 64;
 // Share of a time limit, after which there is no time to begin an image anew.
-constexpr double early = 1.0 / 3;
+constexpr double late = 1.0 / 3;
 // Passes, at most, by which what it missed then counts: where the guided image is too bright by chance, it stays so.
 constexpr double rarest = 32;
 
@@ -171,10 +171,11 @@ PassHalves operator-(PassHalves a, const PassHalves& b) {
 }
 
 // Where path tracing does better than what merges, so does guided-bdpt, mostly, whose fields are there. It begins an
-// image of its own, without what merging blurred, and is looked at in turn.
-void leave_out_merging(RenderState& state) {
+// image of its own, without what merging blurred, and is looked at in turn; or goes on with the image as it is.
+void leave_out_merging(bool anew, RenderState& state) {
   state.plain = {};
-  state.plain.merged = state.film.passes;
+  state.plain.merged = state.film.passes, state.plain.settled = !anew;
+  if (!anew) return;
   drop_passes(state.film);
   state.stats.ledger = {};
 }
@@ -268,7 +269,7 @@ void try_plain(const Job& job, const RenderOptions& options, std::vector<Scratch
   plain.missed =
       std::max(missed_by_plain(look, merges) * passes, 0.5 * plain.missed);  // twice the samples would have shown it
   decide(look.plain + plain.missed / passes, look.deviation, guided, passes, film.passes, plain);
-  if (plain.taken && merges && !is_over(options, state.stats, early)) return leave_out_merging(state);
+  if (plain.taken && merges) return leave_out_merging(!is_over(options, state.stats, late), state);
   if (plain.settled) plain.seen = {};
   if (plain.taken && film.splats) plain.guided = film, plain.ledger = state.stats.ledger;
 }

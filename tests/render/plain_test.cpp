@@ -318,6 +318,24 @@ TEST(Plain, LeavesOutMergingFirst) {
   }
 }
 
+TEST(Plain, KeepsWhatMergedWhenItIsLate) {
+  Scene scene = stage(64);
+  finish(scene);
+  const Accel accel(scene);
+  RenderOptions o = sparing("guided-vcm", 40);
+  const uint32_t merged = rendered(scene, accel, o).plain.merged;
+  ASSERT_GE(merged, 4u);
+  o.spp = merged;
+  RenderState state = rendered(scene, accel, o);
+  o.spp = merged + 8, o.seconds = 1000;
+  state.stats.seconds = 0.4 * o.seconds;
+  render(scene, accel, o, state, {});
+  EXPECT_EQ(state.plain.merged, merged);
+  EXPECT_TRUE(state.plain.settled && !state.plain.taken);
+  EXPECT_EQ(state.film.passes, merged + 8);
+  EXPECT_EQ(state.film.dropped, blind_generations);
+}
+
 // Images without a square are not looked at.
 TEST(Plain, ImagesOfAnySize) {
   for (const auto& [width, height] : {std::pair{1, 1}, {7, 5}, {8, 8}, {9, 23}, {300, 3}}) {

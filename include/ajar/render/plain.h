@@ -49,7 +49,7 @@ struct Plain {
   Film guided;            ///< the image when path tracing took over, while it may still be given back; else empty
   Ledger ledger;          ///< of that image
   uint32_t returned = 0;  ///< passes of path tracing that were dropped when it was
-  uint32_t merged = 0;    ///< passes that were dropped when merging was left out; 0: it was not
+  uint32_t merged = 0;    ///< passes after which merging was left out; 0: it was not
 };
 
 }  // namespace ajar
