@@ -137,8 +137,6 @@ float find_near(const Job& job, const Subpath& camera, bool inner, float radius,
   const Vertex& v = camera[t - 1];
   const MergeSide side = camera_side(job, camera);
   const Shares shares = shares_of(job.walk);
-  const double joined = v.seen ? seen_factor(job.walk.heuristic, shares) : 1,
-               first = v.seen ? first_seen_factor(job.walk.heuristic, shares) : 1;
   float sum = 0;
   scratch.near.clear();
   for_each_near(job.photons[inner], v.p, radius, [&](const Photon& p) {
@@ -148,7 +146,7 @@ float find_near(const Job& job, const Subpath& camera, bool inner, float radius,
     const GuideEval e = evaluate(v.guide, p.wi, Mode::radiance);
     if (is_black(e.f_cos)) return;
     ++scratch.ledger->merge_at(p.s, t).joins;
-    const MergeSide light{p.fixed * (p.s > 2 ? joined : first), p.slope};
+    const MergeSide light{v.seen ? p.fixed * seen_factor(job.walk.heuristic, shares, p.s) : p.fixed, p.slope};
     const double w =
         job.merges_alone ? 1 : merge_weight(job.walk.heuristic, v.merge, light, e.pdf, side, e.pdf_reverse);
     scratch.near.push_back({&p, e.f_cos * p.beta / cosine, float(w)});  // (K1)

@@ -136,10 +136,12 @@ Mean mean_of(const std::vector<double>& x) {
   return {mean, std::sqrt(std::max(square_sum / n - sqr(mean), 0.0) / n)};
 }
 
-// Scale with which to look at squares of these luminances. What is whiter than white counts as white: a lamp in view
+// Scale with which to look at these squares. What is whiter than white counts as white: a lamp in view
 // must not make all else dark.
-double exposure(std::vector<double> luminances) {
-  std::erase_if(luminances, [](double x) { return !(x > 0); });
+double exposure(const std::vector<Square>& squares) {
+  std::vector<double> luminances;
+  for (const Square& s : squares)
+    if (s.mean > 0) luminances.push_back(s.mean);
   std::sort(luminances.begin(), luminances.end());
   const double wanted = exposed * double(luminances.size());
   double rest = std::accumulate(luminances.begin(), luminances.end(), 0.0);
@@ -205,14 +207,13 @@ void doubt_plain(bool merges, RenderState& state) {
 PlainLook compare_halves(const PassHalves& guided, const PassHalves& plain) {
   PlainLook out;
   const double pixels = double(guided.sum.size()), n = guided.passes;
-  std::vector<double> luminances;
-  for (size_t first = 0; first < guided.sum.size(); first += square)
-    luminances.push_back(square_of(guided, first).mean);
-  const double scale = exposure(std::move(luminances));
+  std::vector<Square> squares;
+  for (size_t first = 0; first < guided.sum.size(); first += square) squares.push_back(square_of(guided, first));
+  const double scale = exposure(squares);
   if (!(scale > 0) || !(scale < infinity)) return out;
   std::vector<double> errors[2], biases;
   for (size_t first = 0; first < guided.sum.size(); first += square) {
-    const Square a = square_of(guided, first), b = square_of(plain, first);
+    const Square &a = squares[first / square], b = square_of(plain, first);
     const double level = scale * a.mean;
     // A pixel counts half, so that fireflies hardly excuse themselves.
     for (size_t i = first; i < first + square; ++i) {
@@ -242,7 +243,6 @@ Job plainly(Job job) {
   job.beyond = nullptr;
   job.guided = false, job.learning = nullptr, job.training = nullptr;
   job.walk.fields = nullptr, job.walk.merging = {}, job.walk.inner_share = job.walk.seen_share = 0;
-  job.walk.first_seen = 1;
   return job;
 }
 

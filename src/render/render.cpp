@@ -212,7 +212,6 @@ Job with_vpls(Job job, const Film& film, std::vector<Scratch>& scratches, Vpls& 
   job.light_half = nullptr;
   job.walk.light_paths = vpls.paths,
   job.walk.inner_share = job.walk.seen_share = 0;  // the other weights are of s = 0, s = 1 and t = 1 alone
-  job.walk.first_seen = 1;
   vpls.camera = job.walk;
   vpls.camera.fields = nullptr;
   const uint32_t pass = film.dropped + film.passes;

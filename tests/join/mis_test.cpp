@@ -82,7 +82,7 @@ std::vector<double> fast_weights(const OraclePath& path, Heuristic h) {
     End l = end_of(light, j + 1), c = end_of(camera, n - j);
     MergeSide a = merge_side(h, l, 1, shares, Side::light);
     const MergeSide b = merge_side(h, c, 1, shares, Side::camera);
-    if (c.seen) a.fixed *= l.n > 2 ? seen_factor(h, shares) : first_seen_factor(h, shares);
+    if (c.seen) a.fixed *= seen_factor(h, shares, l.n);
     out[size_t(n + j)] = merge_weight(h, c.merge, a, l.other_before, b, c.other_before);
   }
   return out;

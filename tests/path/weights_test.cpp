@@ -162,7 +162,7 @@ void compare_merges(const Tracer& tracer, const Traced& light, const Traced& cam
       shares.seen = tally.seen, shares.first_seen = tally.first_seen;
       const End end{t, c.own, 0, before.own, 0, before.delta, c.sum, c.merge, c.seen, before.seen};
       const MergeSide side = merge_side(h, end, c.back, shares, Side::camera);
-      const MergeSide lit{c.seen ? p.fixed * seen_factor(h, shares) : p.fixed, p.slope};
+      const MergeSide lit{c.seen ? p.fixed * seen_factor(h, shares, s) : p.fixed, p.slope};
       const double fast = merge_weight(h, c.merge, lit, e.pdf, side, e.pdf_reverse);
       const WholePath path = joined(there, s - 1, camera, t);
       WholePath smooth = path;

@@ -52,12 +52,12 @@ struct MergeSide {
 /// The side whose last vertex is at the merge. other and other_before of the end are not read; back turns the density
 /// per solid angle of going back into the area density of the vertex before. (K6)
 MergeSide merge_side(Heuristic h, const End& end, double back, const Shares& shares, Side side);
-/// What `fixed` of a light side of more than two vertices, made for a camera's vertex that the lens does not see, is to
-/// be multiplied by where it does: one of the other strategies joins at it; and what that of two is.
-inline double seen_factor(Heuristic h, const Shares& shares) {
+/// What `fixed` of a light side of n vertices, made for a camera's vertex that the lens does not see, is to be
+/// multiplied by where it does: one of the other strategies joins at it, or next-event estimation starts there.
+inline double seen_factor(Heuristic h, const Shares& shares, int n) {
+  if (n == 2) return raise(h, shares.first_seen);
   return shares.inner > 0 ? raise(h, shares.seen / shares.inner) : 1;
 }
-inline double first_seen_factor(Heuristic h, const Shares& shares) { return raise(h, shares.first_seen); }
 /// Weight of the merge; reverse: densities per solid angle of going on to the vertex before on each side. merge is
 /// pi r^2 N times its share.
 double merge_weight(Heuristic h, double merge, const MergeSide& light, double light_reverse, const MergeSide& camera,

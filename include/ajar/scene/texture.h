@@ -76,8 +76,8 @@ Rgb eval(const Scene& scene, const Slot& slot, const Surface& at);
 /// The same reduced to one number: the only channel, or the luminance of three.
 float eval_scalar(const Scene& scene, const Slot& slot, const Surface& at);
 /// Derivative of eval_scalar to u and v at the point (for bump maps), per unit of the mesh's uv; bitmaps as if
-/// bilinear, products of colours as if of their luminances, limits as if not reached, averages
-/// as if luminances.
+/// bilinear, products of colours as if of their luminances, limits as if not reached, averages as
+/// if luminances.
 Vec2 eval_gradient(const Scene& scene, const Slot& slot, const Surface& at);
 /// Mean value over the unit square of uv; exact for constants and bitmaps that fill it.
 Rgb mean(const Scene& scene, const Slot& slot);
