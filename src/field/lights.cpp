@@ -1,7 +1,6 @@
 #include "ajar/field/lights.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "ajar/scene/surface.h"
@@ -12,8 +11,6 @@ namespace {
 
 // More than this times what was promised counts as this (law 7).
 constexpr double largest_brought = 64;
-
-void add(int64_t& to, int64_t amount) { std::atomic_ref<int64_t>(to).fetch_add(amount, std::memory_order_relaxed); }
 
 struct CutNode {
   uint32_t node = 0;

@@ -9,8 +9,6 @@
 namespace ajar {
 namespace {
 
-void add(int64_t& to, int64_t amount) { std::atomic_ref<int64_t>(to).fetch_add(amount, std::memory_order_relaxed); }
-
 void add_record(const Field& field, Tallies& tallies, size_t stratum, float value, float weight) {
   const double clamped = std::min(double(weight), largest_weight);
   add(tallies.weight[stratum], to_fixed(clamped, weight_step));

@@ -7,9 +7,9 @@
 namespace ajar {
 namespace {
 
-constexpr double rounding = 1e-5;  // relative difference that sums of floats and of half-floats may make
-constexpr int finest = 8;          // blocks to a side of the finest level
-constexpr int least_side = 8;      // pixels to a side of a block
+constexpr double of_halves = 1e-5;  // relative difference that sums of floats and of half-floats may make
+constexpr int finest = 8;           // blocks to a side of the finest level
+constexpr int least_side = 8;       // pixels to a side of a block
 
 struct Block {
   int x, y, width, height;
@@ -59,7 +59,7 @@ std::vector<Estimate> estimate_level(const Batches& batches, int level, int chan
 /// Welch's test.
 void test(BlockTest& b, double batches_first, double batches_second) {
   const double difference = b.first.mean - b.second.mean;
-  const double beyond = std::abs(difference) - rounding * std::max(std::abs(b.first.mean), std::abs(b.second.mean));
+  const double beyond = std::abs(difference) - of_halves * std::max(std::abs(b.first.mean), std::abs(b.second.mean));
   const double v1 = b.first.variance, v2 = b.second.variance, v = v1 + v2;
   if (beyond <= 0) return;
   if (v <= 0) {

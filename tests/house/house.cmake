@@ -95,6 +95,14 @@ foreach(file ${headers})
   endforeach()
 endforeach()
 
+# What a file has for itself, by another's name.
+file(GLOB_RECURSE sources RELATIVE ${ROOT} ${ROOT}/src/*.cpp)
+execute_process(COMMAND awk -f ${CMAKE_CURRENT_LIST_DIR}/names.awk ${sources} WORKING_DIRECTORY ${ROOT}
+                OUTPUT_VARIABLE shared RESULT_VARIABLE failed OUTPUT_STRIP_TRAILING_WHITESPACE)
+if(shared OR failed)
+  breach("${shared}; name one of them otherwise (awk: ${failed})")
+endif()
+
 file(GLOB_RECURSE all RELATIVE ${ROOT} ${ROOT}/include/*.h ${ROOT}/src/*.* ${ROOT}/tests/*.h ${ROOT}/tests/*.cpp
      ${ROOT}/benchmarks/*.* ${ROOT}/docs/*.md ${ROOT}/scenes/*.py ${ROOT}/scenes/*.xml ${ROOT}/*.md)
 foreach(file ${all})

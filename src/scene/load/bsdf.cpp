@@ -9,7 +9,7 @@
 namespace ajar {
 namespace {
 
-constexpr double air = 1.000277, bk7 = 1.5046, polypropylene = 1.49;
+constexpr double index_of_polypropylene = 1.49;
 
 // A colour that a texture without a name may stand for too.
 Slot main_slot(Params& p, std::initializer_list<const char*> names, const Slot& otherwise, Colour kind) {
@@ -39,7 +39,7 @@ double index_of(Params& p, const char* name, double otherwise) {
 }
 
 float relative_index(Params& p, double inside) {
-  return float(index_of(p, "int_ior", inside) / index_of(p, "ext_ior", air));
+  return float(index_of(p, "int_ior", inside) / index_of(p, "ext_ior", index_of_air));
 }
 
 void distribution(Params& p, Material& m) {
@@ -107,7 +107,7 @@ void conductor(Params& p, Material& m) {
                 fmt::format("{} in its place", usual));
     metal = find_metal(usual);
   }
-  const float outside = float(index_of(p, "ext_eta", p.loader.document.old ? air : 1));
+  const float outside = float(index_of(p, "ext_eta", p.loader.document.old ? index_of_air : 1));
   m.eta = index_of_metal(p, "eta", metal->eta) / outside;
   m.k = index_of_metal(p, "k", metal->k) / outside;
 }
@@ -118,7 +118,7 @@ void roughconductor(Params& p, Material& m) {
 }
 
 void dielectric(Params& p, Material& m) {
-  m.ior = relative_index(p, bk7);
+  m.ior = relative_index(p, index_of_bk7);
   m.specular = slot(p, {"specular_reflectance"}, 1.0f, Colour::reflectance);
   m.transmittance = slot(p, {"specular_transmittance"}, 1.0f, Colour::reflectance);
 }
@@ -129,7 +129,7 @@ void roughdielectric(Params& p, Material& m) {
 }
 
 void plastic(Params& p, Material& m) {
-  m.ior = relative_index(p, polypropylene);
+  m.ior = relative_index(p, index_of_polypropylene);
   m.reflectance = main_slot(p, {"diffuse_reflectance", "reflectance"}, 0.5f, Colour::reflectance);
   m.specular = slot(p, {"specular_reflectance"}, 1.0f, Colour::reflectance);
   if (boolean(p, "nonlinear", false)) m.inner = Inner::nonlinear;

@@ -15,8 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double air = 1.000277, bk7 = 1.5046;
-
 // The file that another one means: beside that, or where the scene's files are; then the same without its folders,
 // which may be another machine's. Empty if there is none.
 std::string find_beside(const Params& p, const std::string& other, const std::string& name) {
@@ -104,7 +102,7 @@ bool is_mirror(const MtlMaterial& m) { return m.illum == 5 || m.illum == 8; }
 
 // Glass and metal are those of Mitsuba's plugins, whatever Ni and Ks say.
 void note_ignored(Params& p, const MtlMaterial& m) {
-  if (is_glass(m) && m.ior > 0 && std::abs(m.ior - bk7) > 0.01)
+  if (is_glass(m) && m.ior > 0 && std::abs(m.ior - index_of_bk7) > 0.01)
     note(p.loader, p.node, fmt::format("usemtl {}: its Ni is not used: glass is bk7, as in Mitsuba", m.name));
   if (is_mirror(m) && m.has_specular)
     note(p.loader, p.node,
@@ -117,13 +115,13 @@ Material surface_of(Params& p, const std::string& library, const MtlMaterial& m)
   note_ignored(p, m);
   if (is_glass(m)) {
     out.kind = MaterialKind::dielectric;
-    out.ior = float(bk7 / air);
+    out.ior = float(index_of_bk7 / index_of_air);
     return out;
   }
   if (is_mirror(m)) {
     const Metal* aluminium = find_metal("Al");
     out.kind = MaterialKind::conductor;
-    out.eta = aluminium->eta / float(air), out.k = aluminium->k / float(air);
+    out.eta = aluminium->eta / float(index_of_air), out.k = aluminium->k / float(index_of_air);
     return out;
   }
   out.reflectance = slot_of_map(p, library, m.map_diffuse, Colour::reflectance, decoded(p, m, m.diffuse));

@@ -24,6 +24,9 @@ using DVec3 = glm::dvec3;
 /// without a limit (indices of refraction, roughness). emission: spectra as light, unbounded.
 enum class Colour { reflectance, ratio, emission };
 
+/// Indices of refraction, as Mitsuba has them.
+inline constexpr double index_of_air = 1.000277, index_of_bk7 = 1.5046;
+
 struct ObjFile;
 
 struct Loader {
@@ -69,6 +72,9 @@ struct Open {
   Open& operator=(const Open&) = delete;
   Loader& loader;
 };
+
+/// The attribute "value"; an Error where it is missing.
+const std::string& value_of(const Loader& loader, const Node& node);
 
 // numbers
 

@@ -24,12 +24,6 @@ bool is_parameter(const Node& node) {
   return std::find(std::begin(tags), std::end(tags), node.tag) != std::end(tags);
 }
 
-const std::string& value_of(const Loader& loader, const Node& node) {
-  const std::string* value = attribute(node, "value");
-  if (value == nullptr) fail(loader, node, "needs value=\"...\"");
-  return *value;
-}
-
 // Whether it is spelt as a number, but is too large for one.
 bool is_huge(std::string_view text) {
   text = trimmed(text);
@@ -65,6 +59,12 @@ std::string_view take_word(std::string_view& text) {
 }
 
 }  // namespace
+
+const std::string& value_of(const Loader& loader, const Node& node) {
+  const std::string* value = attribute(node, "value");
+  if (value == nullptr) fail(loader, node, "needs value=\"...\"");
+  return *value;
+}
 
 std::optional<double> to_number(std::string_view text) {
   text = trimmed(text);

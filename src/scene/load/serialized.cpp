@@ -29,17 +29,17 @@ enum Flags : uint32_t {
 
 // A file, of which no more is read than is asked for: it may hold thousands of meshes, each read on its own. Or bytes
 // in memory.
-struct Source {
+struct Pieces {
   size_t size = 0;
   std::function<std::span<const std::byte>(size_t at, size_t count)> piece;  // within the size; until the next one
   std::string name;                                                          // for messages
 };
 
-Source source_of(std::span<const std::byte> bytes, const std::string& name) {
+Pieces pieces_of(std::span<const std::byte> bytes, const std::string& name) {
   return {bytes.size(), [bytes](size_t at, size_t count) { return bytes.subspan(at, count); }, name};
 }
 
-Source open_source(const std::string& path) {
+Pieces open_pieces(const std::string& path) {
   const auto file = std::make_shared<std::ifstream>(open_bytes(path));
   const auto buffer = std::make_shared<std::vector<std::byte>>();
   file->seekg(0, std::ios::end);
@@ -55,7 +55,7 @@ Source open_source(const std::string& path) {
 }
 
 template <class T>
-T load(const Source& source, size_t at) {
+T load(const Pieces& source, size_t at) {
   T out;
   std::memcpy(&out, source.piece(at, sizeof(T)).data(), sizeof(T));
   return out;
@@ -64,11 +64,11 @@ T load(const Source& source, size_t at) {
 // Inflates piece by piece, so that counts which lie cost no more memory than the data there really is.
 struct Inflater {
   z_stream stream{};
-  const Source& source;
+  const Pieces& source;
   size_t next;  // byte of the source
   const std::string& name = source.name;
 
-  Inflater(const Source& from, size_t at) : source(from), next(at) {
+  Inflater(const Pieces& from, size_t at) : source(from), next(at) {
     if (inflateInit(&stream) != Z_OK) throw Error(name + ": zlib cannot start; is there enough memory?");
   }
   Inflater(const Inflater&) = delete;
@@ -131,7 +131,7 @@ struct Inflater {
   }
 };
 
-uint16_t check_header(const Source& source, size_t at) {
+uint16_t check_header(const Pieces& source, size_t at) {
   const std::string& name = source.name;
   if (at + header_size > source.size) throw Error(name + ": too short for a serialized mesh; is the file whole?");
   if (load<uint16_t>(source, at) != magic)
@@ -144,7 +144,7 @@ uint16_t check_header(const Source& source, size_t at) {
 }
 
 // Where a mesh starts, from the dictionary at the end of the file; the first one starts at 0 by definition.
-size_t find_mesh(const Source& source, uint16_t version, int shape_index) {
+size_t find_mesh(const Pieces& source, uint16_t version, int shape_index) {
   const std::string& name = source.name;
   if (shape_index < 0) throw Error(fmt::format("{}: shape_index {} is negative; they count from 0", name, shape_index));
   if (shape_index == 0) return 0;
@@ -166,7 +166,7 @@ void skip_name(Inflater& in) {
     if (length == 1 << 16) throw Error(in.name + ": a mesh name of more than 64 KiB; the file is damaged");
 }
 
-Mesh read_mesh(const Source& source, int shape_index, const MeshOptions& options) {
+Mesh read_mesh(const Pieces& source, int shape_index, const MeshOptions& options) {
   const std::string& name = source.name;
   const size_t start = find_mesh(source, check_header(source, 0), shape_index);
   const uint16_t own_version = check_header(source, start);
@@ -198,11 +198,11 @@ Mesh read_mesh(const Source& source, int shape_index, const MeshOptions& options
 
 Mesh parse_serialized(std::span<const std::byte> bytes, const std::string& name, int shape_index,
                       const MeshOptions& options) {
-  return read_mesh(source_of(bytes, name), shape_index, options);
+  return read_mesh(pieces_of(bytes, name), shape_index, options);
 }
 
 Mesh read_serialized(const std::string& path, int shape_index, const MeshOptions& options) {
-  return read_mesh(open_source(path), shape_index, options);
+  return read_mesh(open_pieces(path), shape_index, options);
 }
 
 }  // namespace ajar

@@ -28,12 +28,6 @@ Rgb checked(Loader& loader, const Node& node, Rgb c, Colour kind) {
   return c;
 }
 
-const std::string& value_of(const Loader& loader, const Node& node) {
-  const std::string* value = attribute(node, "value");
-  if (value == nullptr) fail(loader, node, "needs value=\"...\"");
-  return *value;
-}
-
 Rgb rgb_of(const Loader& loader, const Node& node, bool encoded) {
   std::string_view value = value_of(loader, node);
   while (value.starts_with(' ')) value.remove_prefix(1);
