@@ -87,12 +87,13 @@ List pairs_of_file(Loader& loader, const Node& node, const std::string& name) {
   return list;
 }
 
+// In version 0.x surfaces are seen under equal energy too.
 Rgb of_list(Loader& loader, const Node& node, List list, Colour kind) {
   if (list.empty()) fail(loader, node, "holds no wavelengths");
   for (const auto& [nm, x] : list)
     if (!(nm > 0 && nm < 1e6) || !(std::abs(x) < 1e30)) fail(loader, node, fmt::format("{}:{} is out of range", nm, x));
   const bool bright = std::any_of(list.begin(), list.end(), [](const auto& pair) { return pair.second > 0; });
-  const Rgb c = rgb_of_list(std::move(list), kind);
+  const Rgb c = rgb_of_list(std::move(list), loader.document.old ? Colour::emission : kind);
   if (bright && is_black(c))
     note(loader, node,
          "black, since nothing of it can be seen: wavelengths are in nm, and between two of them, 360 to 830");

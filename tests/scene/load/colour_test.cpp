@@ -77,6 +77,23 @@ TEST(Colour, EqualEnergyLightIsWarm) {  // E in sRGB: XYZ (1, 1, 1)
   EXPECT_RGB(radiance(flat("300:1, 900:1")), 1.2048, 0.9484, 0.9087, 4e-3);
 }
 
+// XYZ (1, 1, 1) of surfaces too, as in Mitsuba 0.6; the red of a white wall is more than there can be.
+TEST(Colour, ListsOfTheOlderVersionAreSeenUnderEqualEnergy) {
+  const auto material = [](const std::string& type, const std::string& inside) {
+    return load_inside("<bsdf type='" + type + "'>" + inside + "</bsdf>", {}, "0.6.0").materials[0];
+  };
+  const std::string half = "<spectrum name='reflectance' value='300:.5, 900:.5'/>";
+  EXPECT_RGB(material("diffuse", half).reflectance.value, 0.6024, 0.4742, 0.4544, 2e-3);
+  EXPECT_RGB(material("diffuse", "<spectrum name='reflectance' filename='flat.spd'/>").reflectance.value, 0.3012,
+             0.2371, 0.2272, 1e-3);
+  EXPECT_RGB(material("diffuse", "<spectrum name='reflectance' value='300:1, 900:1'/>").reflectance.value, 1, 0.9484,
+             0.9087, 4e-3);
+  EXPECT_RGB(material("diffuse", "<spectrum name='reflectance' value='.5'/>").reflectance.value, 0.5, 0.5, 0.5, 1e-6);
+  EXPECT_RGB(
+      material("conductor", "<string name='extEta' value='vacuum'/><spectrum name='eta' value='300:2, 900:2'/>").eta,
+      2.4096, 1.8968, 1.8174, 8e-3);
+}
+
 TEST(Colour, ListIsLinearBetweenAndZeroOutside) {
   EXPECT_RGB(rgb_of_list({{700, 0}, {400, 0}, {550, 1}}, Colour::ratio),  // sorted first
              rgb_of_list({{400, 0}, {475, 0.5}, {550, 1}, {625, 0.5}, {700, 0}}, Colour::ratio).x,
