@@ -23,11 +23,29 @@ Light make_light(Params& p, LightKind kind) {
   return light;
 }
 
+// What a colour of light is multiplied by: a number in a <spectrum> is a flat list to Mitsuba 3, and so of the tint of
+// equal energy. In version 0.x it is white.
+Rgb tint(Params& p, const char* name) {
+  const Node* node = find(p, {name});
+  const bool spectrum = node != nullptr && node->tag == "spectrum" && node->type.empty();
+  const std::string* value = spectrum ? attribute(*node, "value") : nullptr;
+  if (p.loader.document.old || value == nullptr || !to_number(*value)) return Rgb(1);
+  return rgb_of_list({{300, 1}, {900, 1}}, Colour::emission);
+}
+
+Slot one_colour(Params& p, const char* name) { return colour(p, name, Rgb(1), Colour::emission) * tint(p, name); }
+
+Slot colour_or_texture(Params& p, const char* name) {
+  Slot s = slot(p, {name}, 1.0f, Colour::emission);
+  s.value *= tint(p, name);
+  return s;
+}
+
 void add(Loader& loader, Light&& light) { loader.scene.lights.push_back(std::move(light)); }
 
 void area(Params& p, uint32_t shape) {
   Light light = make_light(p, LightKind::area);
-  light.radiance = slot(p, {"radiance"}, 1.0f, Colour::emission);
+  light.radiance = colour_or_texture(p, "radiance");
   light.shape = shape;
   p.loader.scene.shapes[shape].light = uint32_t(p.loader.scene.lights.size());
   add(p.loader, std::move(light));
@@ -35,7 +53,7 @@ void area(Params& p, uint32_t shape) {
 
 void constant(Params& p) {
   Light light = make_light(p, LightKind::constant);
-  light.radiance = Slot(colour(p, "radiance", Rgb(1), Colour::emission));
+  light.radiance = one_colour(p, "radiance");
   add(p.loader, std::move(light));
 }
 
@@ -54,7 +72,7 @@ void envmap(Params& p) {
 
 void point(Params& p) {
   Light light = make_light(p, LightKind::point);
-  light.radiance = Slot(colour(p, "intensity", Rgb(1), Colour::emission));
+  light.radiance = one_colour(p, "intensity");
   const Node* position = find(p, {"position"});
   const DVec3 at = position == nullptr ? DVec3(0) : vector_of(p.loader, *position, 0);
   light.position = Vec3(to_world(p) * glm::dvec4(at, 1));
@@ -73,7 +91,7 @@ void project_texture(Params& p, double cutoff, Light& light) {
 
 void spot(Params& p) {
   Light light = make_light(p, LightKind::spot);
-  light.radiance = Slot(colour(p, "intensity", Rgb(1), Colour::emission));
+  light.radiance = one_colour(p, "intensity");
   const double cutoff = number(p, "cutoff_angle", 20), beam = number(p, "beam_width", cutoff * 3 / 4);
   if (!(cutoff > 0 && cutoff <= 180)) fail(p.loader, p.node, "cutoff_angle should be above 0, at most 180 degrees");
   if (!(beam >= 0 && beam <= cutoff)) fail(p.loader, p.node, "beam_width should be from 0 to cutoff_angle");
@@ -90,7 +108,7 @@ void spot(Params& p) {
 
 void directional(Params& p) {
   Light light = make_light(p, LightKind::directional);
-  light.radiance = Slot(colour(p, "irradiance", Rgb(1), Colour::emission));
+  light.radiance = one_colour(p, "irradiance");
   const Node* direction = find(p, {"direction"});
   const DVec3 d = direction == nullptr ? DVec3(0, 0, 1) : vector_of(p.loader, *direction, 0);
   light.direction = Vec3(checked_direction(p.loader, p.node, DVec3(to_world(p) * glm::dvec4(d, 0))));
@@ -102,7 +120,7 @@ void projector(Params& p) {
   Light light = make_light(p, LightKind::projector);
   const double scale = number(p, "scale", 1);
   if (scale < 0) fail(p.loader, p.node, "scale should not be negative");
-  const Slot picture = slot(p, {"irradiance"}, 1.0f, Colour::emission);
+  const Slot picture = colour_or_texture(p, "irradiance");
   light.radiance = product(p, picture, float(scale * std::numbers::pi));
   Camera camera;
   camera.width = camera.height = 1;

@@ -70,11 +70,35 @@ TEST(Colour, FlatSpectrumIsGrey) {
   EXPECT_RGB(reflectance("<spectrum name='reflectance' value='300:0.42, 900:0.42'/>"), 0.42, 0.42, 0.42, 1e-6);
   EXPECT_RGB(reflectance("<spectrum name='reflectance' filename='flat.spd'/>"), 0.25, 0.25, 0.25, 1e-6);
   EXPECT_NEAR(luminance(radiance(flat("300:3, 900:3"))), 3, 2e-3);
-  EXPECT_RGB(radiance(flat("3")), 3, 3, 3, 1e-6);
 }
 
 TEST(Colour, EqualEnergyLightIsWarm) {  // E in sRGB: XYZ (1, 1, 1)
   EXPECT_RGB(radiance(flat("300:1, 900:1")), 1.2048, 0.9484, 0.9087, 4e-3);
+}
+
+// As the list that it stands for, as in Mitsuba 3, whose documents tell of it; white in version 0.x.
+TEST(Colour, NumberInASpectrumIsAFlatLight) {
+  const auto light = [](const std::string& type, const std::string& inside, const std::string& version = "3.0.0") {
+    return load_inside("<emitter type='" + type + "'>" + inside + "</emitter>", {}, version).lights[0].radiance.value;
+  };
+  const auto spectrum = [](const std::string& name) { return "<spectrum name='" + name + "' value=' 2 '/>"; };
+  for (const auto& [type, name] : {std::pair("constant", "radiance"),
+                                   {"point", "intensity"},
+                                   {"spot", "intensity"},
+                                   {"directional", "irradiance"}})
+    EXPECT_RGB(light(type, spectrum(name)), 2.4096, 1.8968, 1.8174, 8e-3);
+  constexpr double pi = 3.14159265;
+  EXPECT_RGB(light("projector", spectrum("irradiance")) / float(pi), 2.4096, 1.8968, 1.8174, 8e-3);
+  const Scene scene = load_inside("<shape type='sphere'><emitter type='area'>" + spectrum("radiance") +
+                                  "</emitter></shape><shape type='sphere'><emitter type='area'><spectrum "
+                                  "name='radiance' type='uniform'><float name='value' value='2'/></spectrum></emitter>"
+                                  "</shape>");
+  EXPECT_RGB(scene.lights[0].radiance.value, 2.4096, 1.8968, 1.8174, 8e-3);
+  EXPECT_RGB(scene.lights[1].radiance.value, 2, 2, 2, 1e-6);
+  EXPECT_RGB(light("constant", spectrum("radiance"), "0.6.0"), 2, 2, 2, 1e-6);
+  EXPECT_RGB(light("constant", "<rgb name='radiance' value='2'/>"), 2, 2, 2, 1e-6);
+  EXPECT_RGB(light("constant", "<float name='radiance' value='2'/>"), 2, 2, 2, 1e-6);
+  EXPECT_RGB(light("constant", "<spectrum name='radiance' value='1, 2, 3'/>"), 1, 2, 3, 1e-6);
 }
 
 // XYZ (1, 1, 1) of surfaces too, as in Mitsuba 0.6; the red of a white wall is more than there can be.

@@ -31,7 +31,7 @@ TEST(Emitters, Area) {
 
 TEST(Emitters, Constant) {
   EXPECT_RGB(light("constant").radiance.value, 1, 1, 1, 0);
-  EXPECT_RGB(light("constant", "<spectrum name='radiance' value='0.3'/>").radiance.value, 0.3, 0.3, 0.3, 1e-6);
+  EXPECT_RGB(light("constant", "<rgb name='radiance' value='0.3'/>").radiance.value, 0.3, 0.3, 0.3, 1e-6);
 }
 
 TEST(Emitters, Envmap) {
