@@ -51,11 +51,16 @@ void read_normal(Cursor& in, ObjFile& out) {
   out.vn.push_back(length > 0 && std::isfinite(length) ? Vec3(d / length) : Vec3(0));
 }
 
-// A number from 1, or one counted back from the latest (-1). Numbers ahead of their statements are checked later.
-uint32_t read_index(Cursor& in, size_t so_far, const char* what) {
+// A number from 1, or one counted back from the latest (-1). Numbers ahead of their statements are checked later. Some
+// files write 0 for what a corner lacks, none here.
+uint32_t read_index(Cursor& in, size_t so_far, const char* what, bool may_lack = true) {
   int64_t i = 0;
   const char* rest = read_integer(in.p, in.end, i);
   if (rest == in.p) in.fail(fmt::format("\"{}\" is not a corner of a face (v, v/vt, v//vn or v/vt/vn)", in.token()));
+  if (i == 0 && may_lack) {
+    in.p = rest;
+    return none;
+  }
   if (i < 0) i += int64_t(so_far) + 1;
   if (i < 1 || i >= none) in.fail(fmt::format("\"{}\": there is no such {}; {} so far", in.token(), what, so_far));
   in.p = rest;
@@ -65,7 +70,7 @@ uint32_t read_index(Cursor& in, size_t so_far, const char* what) {
 void read_face(Cursor& in, ObjFile& out, uint32_t material) {
   out.faces.push_back({out.corners.size(), in.line, material});
   while (!in.at_end()) {
-    Corner c{read_index(in, out.v.size(), "v"), none, none};
+    Corner c{read_index(in, out.v.size(), "v", false), none, none};
     if (!in.at_break() && *in.p == '/') {
       ++in.p;
       if (!in.ends_token() && *in.p != '/') c.vt = read_index(in, out.vt.size(), "vt");

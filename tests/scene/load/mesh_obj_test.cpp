@@ -224,6 +224,19 @@ TEST(MeshObj, empty_files_are_empty_meshes) {
   EXPECT_TRUE(obj("# nothing", MeshOptions()).positions.empty());
 }
 
+TEST(MeshObj, an_index_0_stands_for_what_a_corner_lacks) {
+  for (const char* faces : {"f 1/0/0 2/0/0 3/0/0\n", "f 1/0 2/0 3/0\n", "f 1//0 2//0 3//0\n"}) {
+    const Mesh m = obj(three_vertices + faces, MeshOptions());
+    EXPECT_EQ(m.triangles.size(), 1u) << faces;
+    EXPECT_TRUE(m.uvs.empty()) << faces;
+    EXPECT_EQ(m.normals[0], Vec3(0, 0, 1)) << faces;  // the face's
+  }
+  const Mesh m = obj(three_vertices + "vt .5 .5\nvn 1 0 0\nf 1/0/1 2/1/0 3/0/1\n", MeshOptions());
+  EXPECT_EQ(m.uvs[1], Vec2(.5, .5));
+  EXPECT_EQ(m.normals[1], Vec3(0, 0, 1));
+  EXPECT_EQ(m.normals[2], Vec3(1, 0, 0));
+}
+
 TEST(MeshObj, errors_name_file_line_and_culprit) {
   EXPECT_EQ(obj_error("v 1 2\n"), "a.obj:1: v has 2 coordinates; it needs x y z");
   EXPECT_EQ(obj_error("\n\nv 1,5 2 3\n"), "a.obj:3: \"1,5\" is not a number");
