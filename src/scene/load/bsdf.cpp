@@ -297,7 +297,7 @@ void mixture(Params& p, Material& m) {
 }
 
 void bumpmap(Params& p, Material& m) {
-  m.map_scale = float(number(p, "scale", 1));
+  if (!p.loader.document.old) m.map_scale = float(number(p, "scale", 1));  // 0.x has a texture for that
   const Node* map = nullptr;
   for (size_t i = 0; i < p.node.children.size(); ++i) {
     const Node& child = p.node.children[i];
