@@ -194,7 +194,7 @@ void principled(Params& p, Material& m) {
       {"spec_trans", &m.spec_trans}, {"spec_tint", &m.spec_tint},     {"sheen", &m.sheen},
       {"sheen_tint", &m.sheen_tint}, {"clearcoat", &m.clearcoat},     {"clearcoat_gloss", &m.clearcoat_gloss},
       {"flatness", &m.flatness}};
-  for (const auto& [name, target] : slots) *target = slot(p, {name}, *target, Colour::ratio);
+  for (const auto& [name, target] : slots) *target = number_slot(p, name, *target);
   m.ior = float(number(p, "eta", 1.5));
   if (has(p, "specular")) {  // Burley 2012: reflectance at normal incidence is 0.08 times this
     const double specular = number(p, "specular", 0.5);
@@ -269,6 +269,7 @@ void twosided(Params& p, Material& m) {
 
 void mask(Params& p, Material& m) {
   m.weight = main_slot(p, {"opacity"}, 0.5f, Colour::reflectance);
+  if (!p.loader.document.old) m.weight = as_number(p, m.weight);
   take_nested(p, m, 1, 1);
 }
 

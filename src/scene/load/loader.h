@@ -150,7 +150,8 @@ void check_texture(Loader& loader, const Node& node);
 Slot slot(Params& params, std::initializer_list<const char*> names, const Slot& otherwise, Colour kind);
 /// The same of an element at hand.
 Slot slot_of(Loader& loader, const Node& node, Colour kind);
-/// A slot of which one number is asked: of colours the luminance, in version 0.x the mean of their parts.
+/// A slot of which one number is asked: of colours the luminance, in version 0.x the mean of their parts; but for that,
+/// checkerboards with their colours exchanged.
 Slot as_number(Params& params, const Slot& s);
 /// A parameter that may be a number or such a texture.
 Slot number_slot(Params& params, const char* name, const Slot& otherwise);

@@ -256,9 +256,26 @@ Slot slot(Params& params, std::initializer_list<const char*> names, const Slot& 
   return node == nullptr ? otherwise : slot_of(params.loader, *node, kind);
 }
 
+namespace {
+
+// Asked for a number, checkerboards of Mitsuba 2 and 3 show color1 where they show color0 as colours.
+Slot exchanged(Params& params, const Slot& s) {
+  if (s.texture == none) return s;
+  Texture t = params.loader.scene.textures[s.texture];
+  if (t.kind != TextureKind::checkerboard) return s;
+  const Slot color0 = exchanged(params, t.color1);
+  t.color1 = exchanged(params, t.color0);
+  t.color0 = color0;
+  Slot other;
+  other.texture = add_texture(params.loader, params.node, std::move(t));
+  return other;
+}
+
+}  // namespace
+
 Slot as_number(Params& params, const Slot& s) {
   const Scene& scene = params.loader.scene;
-  if (!params.loader.document.old) return s;
+  if (!params.loader.document.old) return exchanged(params, s);
   if (s.texture == none) return averaged(s.value);
   if (is_grey(scene, scene.textures[s.texture])) return s;
   Texture t;
@@ -270,7 +287,8 @@ Slot as_number(Params& params, const Slot& s) {
 }
 
 Slot number_slot(Params& params, const char* name, const Slot& otherwise) {
-  return as_number(params, slot(params, {name}, otherwise, Colour::ratio));
+  const Node* node = find(params, {name});
+  return node == nullptr ? otherwise : as_number(params, slot_of(params.loader, *node, Colour::ratio));
 }
 
 Slot product(Params& params, const Slot& a, const Slot& b) {

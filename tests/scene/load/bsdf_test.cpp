@@ -239,6 +239,36 @@ TEST(Bsdf, ColoursForNumbersAreAveragedInOldScenes) {
   }
 }
 
+// As Mitsuba 2 and 3 have it, for all numbers; inner ones too.
+TEST(Bsdf, CheckerboardsForNumbersAreExchangedInLaterScenes) {
+  const std::string inner =
+      "<texture name='color1' type='checkerboard'><transform name='to_uv'><scale x='2' y='2'/>"
+      "</transform><float name='color0' value='.3'/><float name='color1' value='.4'/></texture>";
+  const auto board = [&](const std::string& name) {
+    return fmt::format("<texture name='{}' type='checkerboard'><float name='color0' value='.2'/>{}</texture>", name,
+                       inner);
+  };
+  const std::string text =
+      bsdf("roughconductor", board("alpha")) + bsdf("principled", board("metallic")) +
+      bsdf("mask", board("opacity") +
+                       bsdf("blendbsdf", board("weight") + bsdf("diffuse") + bsdf("diffuse", board("reflectance"))));
+  for (const bool old : {false, true}) {
+    const Scene s = load_inside(text, {}, old ? "0.6.0" : "3.0.0");
+    const auto at = [&](const Slot& slot, float u, float v) {
+      Surface surface;
+      surface.uv = {u, v};
+      return eval_scalar(s, slot, surface);
+    };
+    for (const Slot& slot : {s.materials[0].alpha_u, s.materials[0].alpha_v, s.materials[1].metallic,
+                             s.materials[4].weight, s.materials[5].weight}) {
+      EXPECT_FLOAT_EQ(at(slot, 0.75f, 0.25f), old ? 0.3f : 0.2f);
+      EXPECT_FLOAT_EQ(at(slot, 0.1f, 0.1f), old ? 0.2f : 0.4f);
+      EXPECT_FLOAT_EQ(at(slot, 0.3f, 0.1f), old ? 0.2f : 0.3f);
+    }
+    EXPECT_FLOAT_EQ(at(s.materials[3].reflectance, 0.1f, 0.1f), 0.2f);
+  }
+}
+
 TEST(Bsdf, Mixture) {
   Material m = last(bsdf("mixturebsdf", word("weights", "0.3, 0.7") + bsdf("diffuse") + bsdf("plastic")));
   EXPECT_EQ(m.kind, MaterialKind::mixture);
