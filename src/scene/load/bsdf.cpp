@@ -97,8 +97,7 @@ Rgb index_of_metal(Params& p, const char* name, const Rgb& otherwise) {
 
 void conductor(Params& p, Material& m) {
   m.specular = main_slot(p, {"specular_reflectance"}, 1.0f, Colour::reflectance);
-  const bool given = has(p, "eta") || has(p, "k");
-  const char* usual = given || !p.loader.document.old ? "none" : "Cu";
+  const char* usual = p.loader.document.old ? "Cu" : "none";
   const std::string name = text(p, "material", usual);
   const Metal* metal = find_metal(name);
   if (metal == nullptr) {

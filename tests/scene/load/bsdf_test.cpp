@@ -52,6 +52,10 @@ TEST(Bsdf, Conductor) {
   EXPECT_RGB(m.k, 1, 1, 1, 0);
   m = last(bsdf("conductor"), {}, "0.6.0");  // 0.x: copper
   EXPECT_RGB(m.eta, 0.2004, 0.9240, 1.1022, 1e-3);
+  m = last(bsdf("conductor", number("eta", 1.5) + word("extEta", "vacuum")), {}, "0.6.0");  // of copper but for this
+  EXPECT_RGB(m.eta, 1.5, 1.5, 1.5, 1e-6);
+  EXPECT_RGB(m.k, 3.9129, 2.4528, 2.1422, 1e-3);
+  EXPECT_RGB(last(bsdf("conductor", number("eta", 1.5))).k, 1, 1, 1, 0);
   m = last(bsdf("conductor", "<rgb name='eta' value='1 2 3'/><rgb name='k' value='4 5 6'/>" + number("extEta", 2)));
   EXPECT_RGB(m.eta, 0.5, 1, 1.5, 1e-6);
   EXPECT_RGB(m.k, 2, 2.5, 3, 1e-6);
