@@ -247,19 +247,28 @@ void load_integrator(Loader& loader, const Node& node) {
                                     {"volpath-simple", "path"},
                                     {"volpathmis", "path"},
                                     {"ptracer", "light"},
-                                    {"direct", "path"}};
+                                    {"direct", "path"},
+                                    {"direct-projective", "path"},
+                                    {"direct-reparam", "path"},
+                                    {"prb", "path"},
+                                    {"prb-basic", "path"},
+                                    {"prb-projective", "path"},
+                                    {"prb-reparam", "path"},
+                                    {"prbvolpath", "path"}};
   Hints& hints = loader.scene.hints;
   Params p(loader, node);
   std::string type = node.type;
   std::replace(type.begin(), type.end(), '_', '-');
   const auto name = std::find_if(std::begin(names), std::end(names), [&](const Alias& a) { return type == a.theirs; });
-  read_depth(p, name != std::end(names));
-  if (node.type == "direct") hints.max_depth = 2;  // the light that reaches what the camera sees, and no further
+  const bool known = name != std::end(names);
+  if (known && type.starts_with("prb")) hints.max_depth = 6;  // Mitsuba's default for them
+  read_depth(p, known);
+  if (known && type.starts_with("direct")) hints.max_depth = 2;  // light of what the camera sees, and no further
   if (boolean(p, "hide_emitters", false)) note(loader, node, "hide_emitters is not supported: lights stay visible");
   const Open open(loader, node);
   if (const std::vector<const Node*> inner = nested(p, "integrator"); !inner.empty())
     return load_integrator(loader, *inner.front());  // aov, moment and others measure what another one renders
-  if (name == std::end(names))
+  if (!known)
     return note(loader, node, "Ajar has no integrator of this name: it chooses one as if the scene named none");
   hints.integrator = name->ours;
   note_unused(p, {"id", "rr_depth", "strict_normals", "samples_per_pass", "timeout", "block_size", "light_image",

@@ -1,6 +1,8 @@
 // Sensor, film, filter, sampler, integrator.
 #include "ajar/scene/camera.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 
@@ -274,6 +276,14 @@ TEST(Integrators, AreHints) {
   h = hints("<integrator type='direct'/>");
   EXPECT_EQ(h.integrator, "path");
   EXPECT_EQ(h.max_depth, 2);
+  EXPECT_EQ(hints("<integrator type='direct_projective'/>").max_depth, 2);
+  for (const char* type : {"prb", "prb_basic", "prb_projective", "prb_reparam", "prbvolpath"}) {
+    h = hints(fmt::format("<integrator type='{}'/>", type));
+    EXPECT_EQ(h.integrator, "path") << type;
+    EXPECT_EQ(h.max_depth, 6) << type;
+  }
+  EXPECT_EQ(hints("<integrator type='prb'><integer name='max_depth' value='3'/></integrator>").max_depth, 3);
+  EXPECT_EQ(hints("<integrator type='prb'><integer name='max_depth' value='-1'/></integrator>").max_depth, -1);
   h = hints(
       "<integrator type='aov'><string name='aovs' value='n:sh_normal'/><integrator type='moment'><integrator "
       "type='bdpt'>"
