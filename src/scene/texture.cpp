@@ -87,7 +87,8 @@ Rgb eval_bitmap(const Scene& scene, const Texture& t, const Vec2& uv) {
 // The colour of a checkerboard or grid that is seen. Colour 0 where both coordinates lie in the same half of their
 // period; where neither is near a whole number.
 const Slot& seen(const Texture& t, const Vec2& uv) {
-  const Vec3 at = t.to_uv * Vec3(uv, 1);
+  Vec3 at = t.to_uv * Vec3(uv, 1);
+  if (t.mirrored) at = glm::abs(at);
   const float x = at.x - std::floor(at.x), y = at.y - std::floor(at.y);
   if (t.kind == TextureKind::checkerboard) return (x < 0.5f) == (y < 0.5f) ? t.color0 : t.color1;
   const bool line = std::min(std::min(x, 1 - x), std::min(y, 1 - y)) < t.line_width;

@@ -64,6 +64,7 @@ struct Texture {
   Slot color0{0.4f};  ///< checkerboard, where floor(2u) + floor(2v) is even; grid, its ground; scale: the nested slot;
                       ///< limit: what is kept from 0 to 1; average: what is made grey
   Slot color1{0.2f};  ///< checkerboard, elsewhere; grid, its lines; scale: the factor
+  bool mirrored = false;  ///< checkerboard: at u = 0 and v = 0
   float line_width = 0;   ///< grid: how far a line reaches to either side of a whole number
   std::string attribute;  ///< mesh_attribute: its name; black where the mesh has none of this name
 };

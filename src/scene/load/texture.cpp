@@ -46,6 +46,7 @@ Texture checkerboard(Params& p, Colour kind) {
   t.kind = TextureKind::checkerboard;
   t.color0 = slot(p, {"color0"}, 0.4f, kind);
   t.color1 = slot(p, {"color1"}, 0.2f, kind);
+  t.mirrored = p.loader.document.old;  // there coordinates are cut to whole numbers, not rounded down
   t.to_uv = uv_map(p);
   finish(p);
   return t;

@@ -115,6 +115,16 @@ TEST(TextureKinds, Checkerboard) {
   EXPECT_RGB(at(with("<texture name='reflectance' type='checkerboard'/>"), 0.6f, 0.1f), 0.2, 0.2, 0.2, 1e-6);
 }
 
+// Mitsuba 0.6 cuts coordinates to whole numbers.
+TEST(TextureKinds, CheckerboardsOfTheOlderVersionAreMirroredAtZero) {
+  const std::string text = "<bsdf type='diffuse'><texture name='reflectance' type='checkerboard'/></bsdf>";
+  const Scene old = load_inside(text, {}, "0.6.0"), later = load_inside(text);
+  EXPECT_RGB(at(old, -0.1f, 0.1f), 0.4, 0.4, 0.4, 1e-6);
+  EXPECT_RGB(at(old, -0.1f, -0.7f), 0.2, 0.2, 0.2, 1e-6);
+  EXPECT_RGB(at(old, -1.6f, -0.7f), 0.4, 0.4, 0.4, 1e-6);
+  EXPECT_RGB(at(later, -0.1f, 0.1f), 0.2, 0.2, 0.2, 1e-6);
+}
+
 TEST(TextureKinds, Grid) {
   const auto grid = [](const std::string& inside) {
     return with("<texture name='reflectance' type='gridtexture'>" + inside + "</texture>");
