@@ -131,6 +131,16 @@ TEST(Animation, OfAnotherNameIsNotUsed) {
   EXPECT_TRUE(says(s.notes, "the parameter \"animation\" is not used"));
 }
 
+// As in scenes of a time when Mitsuba 3 called it so.
+TEST(Animation, OfAnInstanceMayBeCalledAnimation) {
+  const Scene s = load_inside(
+      "<shape type='shapegroup' id='g'><shape type='sphere'/></shape>"
+      "<shape type='instance'><ref id='g'/><animation name='animation'><transform time='1'/>"
+      "<transform time='0'><translate x='3'/></transform></animation></shape>");
+  EXPECT_RGB(Vec3(s.instances[0].to_world[3]), 3, 0, 0, 1e-6);
+  EXPECT_FALSE(says(s.notes, "not used"));
+}
+
 TEST(Animation, TurnsRatherThanSqueezes) {
   const std::string keys =
       "<transform time='0'><scale value='2'/></transform>"
