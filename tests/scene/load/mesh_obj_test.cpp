@@ -162,6 +162,15 @@ TEST(MeshObj, normals_of_the_file) {
   EXPECT_TRUE(obj(text).normals.empty());  // face_normals
 }
 
+// As Microsoft's libraries wrote them; elsewhere a # begins a comment.
+TEST(MeshObj, numbers_that_are_none_have_more_spellings) {
+  const std::string normals = "vn -1.#IND00 1.#QNAN 0\nvn 1.#INF 0 0\nvn 0 1 0#IND\nf 1//1 2//2 3//3";
+  const Mesh m = obj(three_vertices + normals, MeshOptions());
+  EXPECT_EQ(m.normals[0], Vec3(0, 0, 1));
+  EXPECT_EQ(m.normals[1], Vec3(0, 0, 1));
+  EXPECT_EQ(m.normals[2], Vec3(0, 1, 0));
+}
+
 // A floor and a wall with a common edge, the z axis.
 const std::string open_corner = "v 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nv 0 1 0\nv 0 1 1\n%f 1 2 3 4\n%f 1 5 6 2\n";
 std::string cornered(const std::string& first, const std::string& second) {
