@@ -397,7 +397,7 @@ void load_shape(Loader& loader, const Node& node, uint32_t group) {
     return unsupported(loader, node, fmt::format("{}; {}", unknown(node), supported_shapes), "left out");
   for (const MeshPart& part : parts_of(p)) load_part(p, reader->read, part, group);
   note_strays(p, "texture", "a texture is no bsdf: not used; put it inside one, <bsdf type=\"diffuse\">");
-  finish(p, {"id", "velocity", "collapse"});
+  finish(p, {"id", "velocity", "collapse", "silhouette_sampling_weight"});
 }
 
 }  // namespace ajar

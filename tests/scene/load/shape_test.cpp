@@ -308,6 +308,12 @@ TEST(Shapes, UnknownOnes) {
   }
 }
 
+// Hints for derivatives that change no picture.
+TEST(Shapes, HintsForDerivativesAreNoStrays) {
+  const std::string hint = "<float name='silhouette_sampling_weight' value='0.5'/>";
+  EXPECT_FALSE(says(load_inside("<shape type='sphere'>" + hint + "</shape>").notes, "silhouette"));
+}
+
 TEST(Shapes, FarAwayIsAnError) {
   const std::string move = "<transform name='to_world'><translate x='1e30'/></transform>";
   EXPECT_SAYS(error_of(shape("sphere", "") + shape("sphere", "<point name='center' x='1e30'/>")),
