@@ -261,7 +261,7 @@ void load_integrator(Loader& loader, const Node& node) {
   std::replace(type.begin(), type.end(), '_', '-');
   const auto name = std::find_if(std::begin(names), std::end(names), [&](const Alias& a) { return type == a.theirs; });
   const bool known = name != std::end(names);
-  if (known && type.starts_with("prb")) hints.max_depth = 6;  // Mitsuba's default for them
+  if (known && type.starts_with("prb") && type != "prbvolpath") hints.max_depth = 6;  // Mitsuba's default for them
   read_depth(p, known);
   if (known && type.starts_with("direct")) hints.max_depth = 2;  // light of what the camera sees, and no further
   if (boolean(p, "hide_emitters", false)) note(loader, node, "hide_emitters is not supported: lights stay visible");

@@ -277,11 +277,13 @@ TEST(Integrators, AreHints) {
   EXPECT_EQ(h.integrator, "path");
   EXPECT_EQ(h.max_depth, 2);
   EXPECT_EQ(hints("<integrator type='direct_projective'/>").max_depth, 2);
-  for (const char* type : {"prb", "prb_basic", "prb_projective", "prb_reparam", "prbvolpath"}) {
+  for (const char* type : {"prb", "prb_basic", "prb_projective", "prb_reparam"}) {
     h = hints(fmt::format("<integrator type='{}'/>", type));
     EXPECT_EQ(h.integrator, "path") << type;
     EXPECT_EQ(h.max_depth, 6) << type;
   }
+  EXPECT_EQ(hints("<integrator type='prbvolpath'/>").integrator, "path");
+  EXPECT_EQ(hints("<integrator type='prbvolpath'/>").max_depth, hints("<integrator type='path'/>").max_depth);
   EXPECT_EQ(hints("<integrator type='prb'><integer name='max_depth' value='3'/></integrator>").max_depth, 3);
   EXPECT_EQ(hints("<integrator type='prb'><integer name='max_depth' value='-1'/></integrator>").max_depth, -1);
   h = hints(
