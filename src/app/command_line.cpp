@@ -70,7 +70,8 @@ void run_command_line(std::vector<std::string> words) {
   add_fields(app);
   add_plan(app);
   add_report(app);
-  for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) refuse_empty(*command);
+  for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    read_decimal(*command), refuse_empty(*command);
   std::reverse(words.begin(), words.end());  // as CLI11 takes them
   try {
     app.parse(std::move(words));

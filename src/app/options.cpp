@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <string>
 
 namespace ajar {
 namespace {
@@ -18,6 +19,19 @@ CLI::Validator within(T least, T most, const char* kind) {
   return CLI::Validator(check,
                         most < T(1 << 20) ? fmt::format("{} to {}", least, most) : fmt::format("from {}", least));
 }
+
+// CLI11 reads numbers as C does: 010 would be eight.
+std::string decimal(std::string& text) {
+  const size_t sign = text.starts_with('-') || text.starts_with('+') ? 1 : 0;
+  if (const std::string begin = text.substr(sign, 2); begin == "0x" || begin == "0X")
+    return fmt::format("{} is no decimal number; write one, such as 8", text);
+  if (text.find_first_not_of('0', sign) != text.npos)
+    text.erase(sign, text.find_first_not_of('0', sign) - sign);
+  else if (text.size() > sign)
+    text = "0";
+  return {};
+}
+
 }  // namespace
 
 CLI::Validator whole(uint64_t least, uint64_t most) { return within(least, most, "whole number"); }
@@ -30,6 +44,12 @@ void add_threads(CLI::App& command, int& threads) {
 void add_time(CLI::App& command, std::optional<double>& at) {
   command.add_option("--at", at,
                      "time at which the scene's <animation>s are read (default: when the shutter opens, else 0)");
+}
+
+void read_decimal(CLI::App& command) {
+  for (CLI::Option* option : command.get_options([](CLI::Option*) { return true; }))
+    if (const std::string type = option->get_type_name(); type.starts_with("INT") || type.starts_with("UINT"))
+      option->transform(CLI::Validator(decimal, ""));
 }
 
 void refuse_empty(CLI::App& command) {

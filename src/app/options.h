@@ -15,6 +15,8 @@ CLI::Validator number(double least, double most);
 void add_threads(CLI::App& command, int& threads);
 /// The option --at of commands that look at one moment.
 void add_time(CLI::App& command, std::optional<double>& at);
+/// Whole numbers are decimal: 010 is ten.
+void read_decimal(CLI::App& command);
 /// Values that are there but empty are errors: they come of shell variables that nobody set.
 void refuse_empty(CLI::App& command);
 

@@ -127,6 +127,16 @@ TEST_F(Outputs, TheNameChoosesTheFormatInAnyCase) {
   EXPECT_TRUE(fs::exists("shot.v1.json"));
 }
 
+TEST_F(Outputs, LeadingZerosMakeNoOtherNumber) {
+  for (const auto& [typed, meant] : {std::pair{"010", 10}, {"08", 8}, {"0001", 1}}) {
+    run({"--spp", typed, "--seed", typed, "--max-depth", typed});
+    const nlohmann::json options = nlohmann::json::parse(kit::bytes_of("a.json"))["options"];
+    for (const char* name : {"spp", "seed", "max_depth"}) EXPECT_EQ(options[name], meant) << name << " " << typed;
+  }
+  run({"--seed", "000"});
+  EXPECT_EQ(nlohmann::json::parse(kit::bytes_of("a.json"))["options"]["seed"], 0);
+}
+
 TEST_F(Outputs, ALogGoesOnWithItsRender) {
   run({"--log", "log", "--checkpoint", "state"});
   const std::string first = kit::bytes_of("log");
