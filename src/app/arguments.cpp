@@ -65,7 +65,7 @@ double parse_duration(const std::string& option, const std::string& text) {
   const char* end = text.data() + text.size();
   const std::string unit(std::from_chars(text.data(), end, value).ptr, end);
   const double factor = unit.empty() || unit == "s" ? 1 : unit == "m" || unit == "min" ? 60 : unit == "h" ? 3600 : 0;
-  if (!(value > 0) || factor == 0 || !std::isfinite(value))
+  if (!(value > 0) || factor == 0 || !std::isfinite(value * factor))
     throw Error(fmt::format("{} {}: not a time; write 90s, 5m or 1h", option, text));
   return value * factor;
 }

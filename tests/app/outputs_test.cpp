@@ -84,6 +84,8 @@ TEST_F(Outputs, WrongOnesAreErrorsBeforeTheRender) {
       {{"-o", "a.png", "--aov", "normal"}, "--aov: is for EXR images"},
       {{"--reference", "b.exr"}, "--reference: the error against it goes into the log"},
       {{"--time", "0x10s"}, "--time 0x10s: not a time"},
+      {{"--time", "1e306h"}, "--time 1e306h: not a time"},
+      {{"--max-depth", "0x10"}, "--max-depth: 0x10 is no decimal number"},
       {{"--seed", "18446744073709551616"}, "18446744073709551616 is no whole number from 0 to 18446744073709551615"},
       {{"--spp", "0"}, "0 is no whole number from 1"},
       {{"--integrator", "path", "--techniques", "t"}, "--techniques: path has no strategies"},
