@@ -90,13 +90,13 @@ void warn(const Run& run, const RenderState& state) {
 
 void note_plain(const RenderArguments& a, const Run& run, const RenderState& state) {
   const Plain& p = state.plain;
-  if (a.quiet) return;
+  if (a.quiet || !may_leave_out(run.options)) return;
   if (p.merged > 0)
     say(stderr,
         "ajar: note: merging was left out after {} passes, since light is easy to find here; --plan all goes on "
         "merging\n",
         p.merged);
-  if (!p.taken || !may_leave_out(run.options) || state.film.passes <= p.passes) return;
+  if (!p.taken || state.film.passes <= p.passes) return;
   say(stderr,
       "ajar: note: path tracing took over from {} after {} passes, since light is easy to find here (error after "
       "equal time: {:.2g} times); --plan all goes on guiding\n",

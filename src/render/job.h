@@ -15,6 +15,7 @@
 
 namespace ajar {
 
+struct Plain;
 struct RenderState;
 struct Job;
 struct Sample;
@@ -141,6 +142,8 @@ void trace_photon(const Job&, Sample&, Scratch&);
 
 /// The job of path tracing in a guided integrator's place: as path would have it, on the same film.
 Job plainly(Job job);
+/// Whether the next pass merges: not where the radius is 0, nor once that was left out, unless nothing may be.
+bool merges_still(const RenderOptions& options, const Plain& plain);
 /// After 4, 8, 16 ... 64 passes of a guided integrator: whether path tracing takes over, in RenderState::plain (L2);
 /// after 8, 16, 32 ..., where it did: whether it gives the render back, which then is as it was.
 /// Scratches' counters are left empty.

@@ -246,9 +246,13 @@ Job plainly(Job job) {
   return job;
 }
 
+bool merges_still(const RenderOptions& options, const Plain& plain) {
+  return is_merging(options.integrator) && options.merge_radius > 0 && (plain.merged == 0 || !may_leave_out(options));
+}
+
 void try_plain(const Job& job, const RenderOptions& options, std::vector<Scratch>& scratches, RenderState& state) {
   Plain& plain = state.plain;
-  const bool merges = is_merging(options.integrator) && plain.merged == 0;
+  const bool merges = merges_still(options, plain);
   if (plain.guided.passes > 0) return doubt_plain(merges, state);
   const Film& film = state.film;
   const bool due = std::has_single_bit(film.passes) && film.passes >= first_look && film.passes <= last_look;

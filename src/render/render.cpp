@@ -315,7 +315,6 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
   Film& film = state.film;
   RenderStats& stats = state.stats;
   Job job = make_job(scene, accel, options);
-  const bool merging = integrator.merges && options.merge_radius > 0;
   job.trace = integrator.trace, job.light_half = integrator.light_half;
   job.merges_alone = integrator.trace == trace_photon;
   if (job.merges_alone) job.final_gather = options.final_gather;
@@ -367,7 +366,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
     if (leaving_out && state.learning.fields.generation >= blind_generations)
       threads.run([&] { try_plain(job, options, scratches, state); });
     const bool plain = leaving_out && state.plain.taken;
-    const bool merges = merging && state.plain.merged == 0;
+    const bool merges = merges_still(options, state.plain);
     const bool joined = integrator.guided && integrator.light_half && !merges && !integrator.vpls;
     job.walk.merging = merges && !plain ? merging_of(scene, options, film, equal_chunks(all, batch_chunks)) : Merging{};
     job.walk.merging.paths /= share_of(job, film);

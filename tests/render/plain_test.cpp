@@ -318,6 +318,33 @@ TEST(Plain, LeavesOutMergingFirst) {
   }
 }
 
+TEST(Plain, WhatNeverMergedLeavesNoMergingOut) {
+  Scene scene = stage(64);
+  finish(scene);
+  const Accel accel(scene);
+  RenderOptions o = sparing("guided-vcm", 20);
+  o.merge_radius = 0;
+  const RenderState state = rendered(scene, accel, o);
+  EXPECT_EQ(state.plain.merged, 0u);
+  o.integrator = "guided-bdpt";
+  expect_same_bytes(state, rendered(scene, accel, o));
+}
+
+// As who asks for nothing to be left out wants it, from a checkpoint too.
+TEST(Plain, MergesAgainWhereNothingMayBeLeftOut) {
+  Scene scene = stage(64);
+  finish(scene);
+  const Accel accel(scene);
+  RenderOptions o = sparing("guided-vcm", 20);
+  const RenderState without = rendered(scene, accel, o);
+  ASSERT_GE(without.plain.merged, 4u);
+  o.spp = 24, o.leaves_out = false;
+  uint64_t merges = 0;
+  for (const auto& row : resumed(scene, accel, o, without).stats.ledger.merges)
+    for (const StrategyCost& cost : row) merges += cost.joins;
+  EXPECT_GT(merges, 0u);
+}
+
 TEST(Plain, KeepsWhatMergedWhenItIsLate) {
   Scene scene = stage(64);
   finish(scene);
