@@ -176,6 +176,7 @@ void check_outputs(const RenderArguments& a) {
       if (!goes_on(outputs[i], input)) require_apart(outputs[i], input);
   }
   check_layers(a, outputs), check_layers(a, read(a));
+  if (!a.techniques.empty()) require_apart({{"--techniques", a.techniques}}, outputs);
   for (const Named& output : outputs) check_file(output.path);
   if (!a.techniques.empty()) check_folder(a.techniques);
 }

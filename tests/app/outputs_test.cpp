@@ -73,6 +73,8 @@ TEST_F(Outputs, WrongOnesAreErrorsBeforeTheRender) {
       {{"--checkpoint", "there"}, "there: cannot be written"},
       {{"--log", "there"}, "there: cannot be written"},
       {{"--techniques", "box.xml"}, "box.xml: cannot be written"},
+      {{"--techniques", "t", "--checkpoint", "t"}, "--techniques t: is the same file as --checkpoint t"},
+      {{"--techniques", "a.exr"}, "--techniques a.exr: is the same file as -o a.exr"},
       {{"-o", "there/s0t2.exr", "--techniques", "there"}, "would take away -o there/s0t2.exr, whose name is that of a"},
       {{"--reference", "m2t2-raw.exr", "--log", "l", "--techniques", "."}, "would take away --reference m2t2-raw.exr"},
       {{"--checkpoint", "a.exr"}, "--checkpoint a.exr: is the same file as -o a.exr"},
