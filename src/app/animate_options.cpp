@@ -87,8 +87,7 @@ RenderOptions render_options(const AnimateArguments& a, const Scene& scene) {
   set_max_depth(a.max_depth, scene, o);
   o.limit_fireflies = a.limit_fireflies;
   check_learning(a, o.integrator);
-  if (o.integrator == "vpl" && a.guide != "both")
-    throw Error(fmt::format("--guide {}: vpl guides light subpaths alone; leave it out", a.guide));
+  check_guide(a.guide, o.integrator);
   o.learn.guided = a.guide == "camera" ? Guided::camera : a.guide == "light" ? Guided::light : Guided::both;
   o.learn.memory = parse_bytes("--field-memory", a.field_memory.empty() ? usual_memory : a.field_memory);
   return o;

@@ -95,6 +95,13 @@ void check_integrator(const std::string& name) {
     throw Error(fmt::format("--integrator {}: unknown; known are {}", name, fmt::join(integrator_names(), ", ")));
 }
 
+void check_guide(const std::string& guide, const std::string& integrator) {
+  if (integrator == "guided-path" && guide == "light")
+    throw Error("--guide light: guided-path has no light subpaths; leave it out, or take guided-bdpt");
+  if (integrator == "vpl" && guide != "both")
+    throw Error(fmt::format("--guide {}: vpl guides light subpaths alone; leave it out", guide));
+}
+
 bool is_png(const std::string& path) { return extension_of(path) == ".png"; }
 bool is_exr(const std::string& path) { return extension_of(path) == ".exr"; }
 

@@ -37,6 +37,8 @@ inline constexpr int not_given = std::numeric_limits<int>::min();
 bool is_integrator(const std::string& name);
 /// Throws unless there is.
 void check_integrator(const std::string& name);
+/// Throws where --guide asks an integrator for what it has not.
+void check_guide(const std::string& guide, const std::string& integrator);
 /// Integrators that learn fields, for messages.
 inline constexpr const char* what_learns = "--integrator guided-bdpt, guided-path, guided-vcm or vpl";
 /// What --max-depth means, for help.

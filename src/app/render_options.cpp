@@ -56,10 +56,7 @@ LearnOptions learn_options(const RenderArguments& a, const std::string& integrat
   if (!a.load_fields.empty() && !a.field_structure.empty())
     throw Error("--load-fields: stored fields bring their structure; leave out either this or --field-structure");
   if (a.train % 2) throw Error(fmt::format("--train {}: passes come in pairs; write an even number", a.train));
-  if (integrator == "guided-path" && a.guide == "light")
-    throw Error("--guide light: guided-path has no light subpaths; leave it out, or take guided-bdpt");
-  if (integrator == "vpl" && a.guide != "both")
-    throw Error(fmt::format("--guide {}: vpl guides light subpaths alone; leave it out", a.guide));
+  check_guide(a.guide, integrator);
   LearnOptions o;
   o.lights = lights || a.light_choice.empty();
   o.guided = a.guide == "camera" ? Guided::camera : a.guide == "light" ? Guided::light : Guided::both;

@@ -340,6 +340,8 @@ TEST_F(Animate, SaysWhatIsWrong) {
   EXPECT_SAYS(wrong({"-D", "window=1..2"}), "-D window: the scene has no parameter of this name");
   EXPECT_SAYS(wrong({"--integrator", "pathh"}), "--integrator pathh: unknown");
   EXPECT_SAYS(wrong({"--integrator", "path", "--guide", "light"}), "learns no fields");
+  EXPECT_SAYS(wrong({"--integrator", "guided-path", "--guide", "light"}), "guided-path has no light subpaths");
+  EXPECT_SAYS(wrong({"--integrator", "vpl", "--guide", "camera"}), "vpl guides light subpaths alone");
   EXPECT_SAYS(wrong({"--integrator", "path", "--teach", "1"}), "--teach: the integrator path learns no fields");
   EXPECT_SAYS(wrong({"--integrator", "path", "--forget", "0.5"}), "--forget: the integrator path learns no fields");
   EXPECT_SAYS(wrong({"--forget", "nan"}), "--forget: nan is no number from 0 to 0.999");
