@@ -103,6 +103,7 @@ std::optional<Track> parse_sweep(const std::string& written, std::string value, 
     throw wrong(fmt::format("\"{}\" is neither linear nor smooth", how.substr(1)));
   track.smooth = how == ":smooth";
   if (!all) throw wrong("sweeps go from number to number");
+  if (value.find("...") != value.npos) throw wrong("three dots may be two and a point, .5; write two, and 0.5");
   for (size_t i = 0; i < track.keys.size(); ++i) {
     if (track.keys[i].values.size() != track.keys[0].values.size())
       throw wrong("all its values need the same number of numbers");
@@ -166,7 +167,7 @@ Keyframes read_keyframes(const std::string& path) {
   for (const auto& [name, value] : json.items()) {
     if (name == "frames") {
       if (!value.is_number_integer() || value < 1 || value > most_frames)
-        throw Error(fmt::format("{}: frames should be a number from 1 to {}", path, most_frames));
+        throw Error(fmt::format("{}: frames should be a whole number from 1 to {}", path, most_frames));
       out.frames = value;
     } else if (name == "parameters" && value.is_object()) {
       for (const auto& [parameter, track] : value.items())
@@ -226,7 +227,7 @@ Timeline make_timeline(const std::string& frames, const std::vector<std::string>
   const size_t dots = std::min(at.find(".."), at.size());
   const auto from = to_numbers(std::string_view(at).substr(0, dots));
   const auto to = to_numbers(std::string_view(at).substr(std::min(dots + 2, at.size())));
-  if (!from || !to || from->size() != 1 || to->size() != 1)
+  if (at.find("...") != at.npos || !from || !to || from->size() != 1 || to->size() != 1)
     throw Error(
         fmt::format("--at {}: write FROM..TO, the scene's time at the first and the last frame, such as 0..2", at));
   t.has_time = true, t.first_time = from->front(), t.last_time = to->front();

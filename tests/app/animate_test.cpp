@@ -84,9 +84,10 @@ TEST(Timeline, WrongOnesAreErrors) {
   EXPECT_SAYS(sweep("door"), "name=FROM..TO");
   EXPECT_SAYS(sweep("door=5..wide"), "from number to number");
   EXPECT_SAYS(sweep("door=5..60:quick"), "neither linear nor smooth");
+  EXPECT_SAYS(sweep("door=5...60"), "three dots may be two and a point");
   EXPECT_SAYS(sweep("sun=1 2..3"), "the same number of numbers");
   EXPECT_SAYS(error_of([] { make_timeline("4", {"x=1..2", "x=3"}, "", ""); }), "given twice");
-  for (const char* at : {"soon", "x..1", "0..", "0..1..2", "0 1..2 3", "0..1:smooth"})
+  for (const char* at : {"soon", "x..1", "0..", "0..1..2", "0 1..2 3", "0..1:smooth", "0...1"})
     EXPECT_SAYS(error_of([&] { make_timeline("4", {}, "", at); }), "--at " + std::string(at) + ": write FROM..TO, ");
 }
 
