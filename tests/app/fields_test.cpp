@@ -90,6 +90,15 @@ TEST_F(FieldsUsed, LoadedFieldsSpareTheYoungPasses) {
   EXPECT_GT(second["fields"]["generation"], first["fields"]["generation"]);
 }
 
+TEST_F(FieldsUsed, LoadedFieldsThatTakeTooMuchDoNotGrow) {
+  const auto first = render({"--spp", "9", "--save-fields", fields});
+  const std::vector<std::string> more = {"--spp", "16", "--load-fields", fields, "--plan", "all"};
+  EXPECT_GT(render(more)["fields"]["cells"], first["fields"]["cells"]);
+  std::vector<std::string> little = more;
+  little.insert(little.end(), {"--field-memory", "64K"});
+  EXPECT_EQ(render(little)["fields"]["cells"], first["fields"]["cells"]);
+}
+
 TEST_F(FieldsUsed, GuideAndMemoryAreObeyed) {
   const auto both = render({"--spp", "9"});
   const Picture image = read_picture(out);
