@@ -261,6 +261,9 @@ RenderOptions render_options(const RenderArguments& a, Scene& scene, bool planne
   if (o.final_gather > 0 && o.integrator != "photon")
     throw Error(fmt::format("--final-gather: {} has no photon map to gather from; take photon", o.integrator));
   check_next_event(o, scene);
+  if (a.no_next_event && !a.light_choice.empty())
+    throw Error(
+        fmt::format("--light-choice {}: with --no-next-event no light is chosen; leave it out", a.light_choice));
   const Guided guided = o.learn.guided;
   o.learn = learn_options(a, o.integrator, planned || is_guided(o.integrator));
   if (lists_parts(a)) o.learn.guided = guided;

@@ -96,6 +96,7 @@ TEST_F(Outputs, WrongOnesAreErrorsBeforeTheRender) {
       {{"--plan", "all", "--integrator", "bdpt"}, "--plan all: bdpt leaves nothing out"},
       {{"--plan", "all", "--integrator", "vpl"}, "--plan all: vpl leaves nothing out"},
       {{"--light-choice", "learned", "--integrator", "vcm"}, "vcm learns no choice of lights; take path, bdpt or"},
+      {{"--light-choice", "tree", "--integrator", "path", "--no-next-event"}, "no light is chosen; leave it out"},
       {{"--light-choice", "tree", "--integrator", "light"}, "light chooses its lights by power or uniform"},
       {{"--max-depth", "5000"}, "--max-depth 5000: paths end at 4096 edges"},
       {{"--save-fields", "f"}, "bdpt learns no fields; take --integrator guided-bdpt, guided-path, guided-vcm or vpl"},
