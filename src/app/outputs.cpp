@@ -123,6 +123,13 @@ Picture image_of(const RenderArguments& a, const Scene& scene, const Accel& acce
   }
 }
 
+// Whether the last line was cut, by a disk that was full, say.
+bool is_cut(const std::string& path) {
+  if (!std::filesystem::is_regular_file(path)) return false;
+  std::ifstream file(path, std::ios::binary);
+  return file.seekg(-1, std::ios::end) && file.get() != '\n';
+}
+
 }  // namespace
 
 void Log::write(const RenderState& state, bool last) {
@@ -160,8 +167,10 @@ Log open_log(const RenderArguments& a, std::optional<Picture> reference) {
   log.path = a.log;
   log.reference = std::move(reference);
   if (a.log.empty()) return log;
+  const bool cut = !a.resume.empty() && is_cut(a.log);
   log.file.open(a.log, a.resume.empty() ? std::ios::out : std::ios::app);
   if (!log.file) throw Error(fmt::format("--log {}: cannot be written ({})", a.log, std::strerror(errno)));
+  if (cut) log.file << '\n';
   return log;
 }
 

@@ -178,6 +178,7 @@ void leave_out_merging(bool anew, RenderState& state) {
   state.plain = {};
   state.plain.merged = state.film.passes, state.plain.settled = !anew;
   if (!anew) return;
+  state.plain.guided = state.film, state.plain.ledger = state.stats.ledger;
   drop_passes(state.film);
   state.stats.ledger = {};
 }
@@ -238,6 +239,13 @@ double missed_by_plain(const PlainLook& look, bool merges) {
   return merges ? std::max(look.missed - square * look.bias, 0.0) : look.missed;
 }
 
+void show_merged(RenderState& state) {
+  Plain& plain = state.plain;
+  if (plain.taken || plain.guided.passes <= state.film.passes) return;
+  state.film = std::move(plain.guided), state.stats.ledger = plain.ledger;
+  plain.guided = {}, plain.settled = true;
+}
+
 Job plainly(Job job) {
   job.trace = trace_path, job.light_half = nullptr;
   job.beyond = nullptr;
@@ -253,8 +261,9 @@ bool merges_still(const RenderOptions& options, const Plain& plain) {
 void try_plain(const Job& job, const RenderOptions& options, std::vector<Scratch>& scratches, RenderState& state) {
   Plain& plain = state.plain;
   const bool merges = merges_still(options, plain);
-  if (plain.guided.passes > 0) return doubt_plain(merges, state);
   const Film& film = state.film;
+  if (plain.taken && plain.guided.passes > 0) return doubt_plain(merges, state);
+  if (film.passes >= plain.guided.passes) plain.guided = {}, plain.ledger = {};
   const bool due = std::has_single_bit(film.passes) && film.passes >= first_look && film.passes <= last_look;
   if (plain.settled || film.chunks > 0 || !due || plain.passes == film.passes) return;
   const uint32_t all = square_count(film), count = std::clamp(all / 16, least_squares, most_squares);

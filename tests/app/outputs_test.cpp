@@ -150,6 +150,9 @@ TEST_F(Outputs, ALogGoesOnWithItsRender) {
   const std::string both = kit::bytes_of("log");
   EXPECT_TRUE(both.starts_with(first));
   EXPECT_GT(both.size(), first.size());
+  std::ofstream("log") << first << R"({"cut": )";
+  run({"--log", "log", "--spp", "4", "--resume", "state", "--checkpoint", "state"});
+  EXPECT_NE(kit::bytes_of("log").find("{\"cut\": \n{"), std::string::npos) << "lines of their own";
   run({"--log", "log"});
   EXPECT_LT(kit::bytes_of("log").size(), both.size()) << "a new render begins a new one";
 }

@@ -318,6 +318,30 @@ TEST(Plain, LeavesOutMergingFirst) {
   }
 }
 
+// Whoever stops just then has the image with merging, and may go on without.
+TEST(Plain, StopsShowWhatMergedUntilThereIsMore) {
+  Scene scene = stage(64);
+  finish(scene);
+  const Accel accel(scene);
+  const RenderOptions o = sparing("guided-vcm", 20);
+  const RenderState straight = rendered(scene, accel, o);
+  const uint32_t merged = straight.plain.merged;
+  ASSERT_GE(merged, 4u);
+  for (const uint32_t more : {0u, merged - 1, merged}) {
+    RenderState state = start_render(scene, o);
+    Film last;
+    render(scene, accel, o, state, [&](const RenderState& s) {
+      if (s.plain.merged == 0) last = s.film;
+      return s.plain.merged == 0 || s.film.passes < more;
+    });
+    const RenderState stopped = state;
+    show_merged(state);
+    EXPECT_EQ(state.film.passes, more < merged ? merged : more);
+    EXPECT_EQ(state.film.camera_sum == last.camera_sum, more < merged) << more;
+    expect_same_bytes(straight, resumed(scene, accel, o, stopped));
+  }
+}
+
 TEST(Plain, WhatNeverMergedLeavesNoMergingOut) {
   Scene scene = stage(64);
   finish(scene);
