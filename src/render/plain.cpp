@@ -242,7 +242,7 @@ double missed_by_plain(const PlainLook& look, bool merges) {
 void show_merged(RenderState& state) {
   Plain& plain = state.plain;
   if (plain.taken || plain.guided.passes <= state.film.passes) return;
-  state.film = std::move(plain.guided), state.stats.ledger = plain.ledger;
+  state.film = std::move(plain.guided), state.stats.ledger = std::move(plain.ledger);
   plain.guided = {}, plain.settled = true;
 }
 
