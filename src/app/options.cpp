@@ -25,6 +25,7 @@ std::string decimal(std::string& text) {
   const size_t sign = text.starts_with('-') || text.starts_with('+') ? 1 : 0;
   if (const std::string begin = text.substr(sign, 2); begin == "0x" || begin == "0X")
     return fmt::format("{} is no decimal number; write one, such as 8", text);
+  if (text.find_first_not_of("0123456789", sign) != text.npos) return {};  // told as it stands
   if (text.find_first_not_of('0', sign) != text.npos)
     text.erase(sign, text.find_first_not_of('0', sign) - sign);
   else if (text.size() > sign)

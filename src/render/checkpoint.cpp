@@ -9,7 +9,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind checkpoint_kind = {"AJARck21", "checkpoint", "render once with --checkpoint",
+constexpr FileKind checkpoint_kind = {"AJARck22", "checkpoint", "render once with --checkpoint",
                                       "start again without --resume"};
 
 // One list of fields for both ways.
@@ -59,6 +59,7 @@ void plain_fields(Io& io, State& plain) {
       io.array(plain.seen.half);
   io.value(plain.returned), io.value(plain.merged);
   film_fields(io, plain.guided), io.value(plain.ledger);
+  film_fields(io, plain.with_merging), io.value(plain.merging_ledger);
 }
 
 template <class Io, class State>
@@ -137,10 +138,11 @@ void load_checkpoint(const std::string& path, const std::string& key, RenderStat
   balance_fields(r, state.balance);
   r.require(state.balance.goes_on >= Balance::least && state.balance.goes_on <= Balance::most);
   r.require(state.balance.found.empty() || state.balance.found.size() == pixels);
-  state.plain.guided = state.film;  // for its place and filter, which are not in the file
+  state.plain.guided = state.plain.with_merging = state.film;  // for their place and filter, which are not in the file
   plain_fields(r, state.plain);
   r.require(state.plain.seen.half.size() == state.plain.seen.sum.size());
-  r.require(state.plain.guided.passes == 0 || is_sound(state.plain.guided, pixels));
+  for (const Film* film : {&state.plain.guided, &state.plain.with_merging})
+    r.require(film->passes == 0 || is_sound(*film, pixels));
   read(r, state.learning);
   r.finish();
   if (!learns) state.learning = {};

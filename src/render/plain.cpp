@@ -178,7 +178,7 @@ void leave_out_merging(bool anew, RenderState& state) {
   state.plain = {};
   state.plain.merged = state.film.passes, state.plain.settled = !anew;
   if (!anew) return;
-  state.plain.guided = state.film, state.plain.ledger = state.stats.ledger;
+  state.plain.with_merging = state.film, state.plain.merging_ledger = state.stats.ledger;
   drop_passes(state.film);
   state.stats.ledger = {};
 }
@@ -240,10 +240,9 @@ double missed_by_plain(const PlainLook& look, bool merges) {
 }
 
 void show_merged(RenderState& state) {
-  Plain& plain = state.plain;
-  if (plain.taken || plain.guided.passes <= state.film.passes) return;
-  state.film = std::move(plain.guided), state.stats.ledger = std::move(plain.ledger);
-  plain.guided = {}, plain.settled = true;
+  if (state.plain.with_merging.passes <= state.film.passes) return;
+  state.film = std::move(state.plain.with_merging), state.stats.ledger = state.plain.merging_ledger;
+  state.plain = {};
 }
 
 Job plainly(Job job) {
@@ -262,8 +261,8 @@ void try_plain(const Job& job, const RenderOptions& options, std::vector<Scratch
   Plain& plain = state.plain;
   const bool merges = merges_still(options, plain);
   const Film& film = state.film;
-  if (plain.taken && plain.guided.passes > 0) return doubt_plain(merges, state);
-  if (film.passes >= plain.guided.passes) plain.guided = {}, plain.ledger = {};
+  if (film.passes >= plain.with_merging.passes) plain.with_merging = {}, plain.merging_ledger = {};
+  if (plain.guided.passes > 0) return doubt_plain(merges, state);
   const bool due = std::has_single_bit(film.passes) && film.passes >= first_look && film.passes <= last_look;
   if (plain.settled || film.chunks > 0 || !due || plain.passes == film.passes) return;
   const uint32_t all = square_count(film), count = std::clamp(all / 16, least_squares, most_squares);

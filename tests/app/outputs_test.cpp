@@ -90,6 +90,7 @@ TEST_F(Outputs, WrongOnesAreErrorsBeforeTheRender) {
       {{"--max-depth", "0x10"}, "--max-depth: 0x10 is no decimal number"},
       {{"--seed", "18446744073709551616"}, "18446744073709551616 is no whole number from 0 to 18446744073709551615"},
       {{"--spp", "0"}, "0 is no whole number from 1"},
+      {{"--spp", "0abc"}, "0abc is no whole number from 1"},
       {{"--integrator", "path", "--techniques", "t"}, "--techniques: path has no strategies"},
       {{"--integrator", "light", "--techniques", "t"}, "--techniques: light has no strategies"},
       {{"--plan", "auto", "--integrator", "bdpt"}, "leave out either"},

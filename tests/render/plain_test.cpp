@@ -335,7 +335,9 @@ TEST(Plain, StopsShowWhatMergedUntilThereIsMore) {
       return s.plain.merged == 0 || s.film.passes < more;
     });
     const RenderState stopped = state;
+    if (more == merged - 1) state.plain.taken = true, state.plain.guided = state.film;
     show_merged(state);
+    EXPECT_EQ(state.plain.merged > 0, more >= merged);
     EXPECT_EQ(state.film.passes, more < merged ? merged : more);
     EXPECT_EQ(state.film.camera_sum == last.camera_sum, more < merged) << more;
     expect_same_bytes(straight, resumed(scene, accel, o, stopped));

@@ -46,11 +46,12 @@ struct Plain {
   double missed = 0;        ///< the greatest PlainLook::missed of a sample, halved from look to look
   uint64_t rays = 0;        ///< that it took
   PassHalves seen;
-  Film guided;            ///< the image when path tracing took over, while it may still be given back; or that with
-                          ///< merging, while the one without has fewer passes; else empty
+  Film guided;            ///< the image when path tracing took over, while it may still be given back; else empty
   Ledger ledger;          ///< of that image
   uint32_t returned = 0;  ///< passes of path tracing that were dropped when it was
   uint32_t merged = 0;    ///< passes after which merging was left out; 0: it was not
+  Film with_merging;      ///< the image with it, while the one without has fewer passes; else empty
+  Ledger merging_ledger;  ///< of that image
 };
 
 }  // namespace ajar

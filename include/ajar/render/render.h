@@ -65,11 +65,11 @@ std::string read_checkpoint_key(const std::string& path);
 /// normal), "P.X" ... (world position); zero where nothing is hit. Channel names are pbrt's.
 Picture render_features(const Scene& scene, const Accel& accel, uint64_t seed, int samples = 16);
 
-/// Seconds on the wall and of all threads of this process.
 /// For who stops a render: where merging was left out, the image with it as long as it has more passes. The state is
 /// not to be gone on from then.
 void show_merged(RenderState& state);
 
+/// Seconds on the wall and of all threads of this process.
 double wall_seconds();
 double process_cpu_seconds();
 /// Whether a share of a time limit is over, wall or CPU.

@@ -301,7 +301,7 @@ void bumpmap(Params& p, Material& m) {
   const Node* map = nullptr;
   for (size_t i = 0; i < p.node.children.size(); ++i) {
     const Node& child = p.node.children[i];
-    if (child.name == "scale" || !is_texture(follow(p.loader, child))) continue;
+    if ((child.name == "scale" && !p.loader.document.old) || !is_texture(follow(p.loader, child))) continue;
     if (map != nullptr) fail(p.loader, child, "a bumpmap takes one texture");
     map = &child;
     p.used[i] = true;

@@ -29,7 +29,8 @@ Rgb tint(Params& p, const char* name) {
   const Node* node = find(p, {name});
   const bool spectrum = node != nullptr && node->tag == "spectrum" && node->type.empty();
   const std::string* value = spectrum ? attribute(*node, "value") : nullptr;
-  if (p.loader.document.old || value == nullptr || !to_number(*value)) return Rgb(1);
+  const auto numbers = value == nullptr || p.loader.document.old ? std::nullopt : to_numbers(*value);
+  if (!numbers || numbers->size() != 1) return Rgb(1);
   return rgb_of_list({{300, 1}, {900, 1}}, Colour::emission);
 }
 

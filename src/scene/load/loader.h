@@ -20,8 +20,8 @@ namespace ajar {
 using DMat4 = glm::dmat4;
 using DVec3 = glm::dvec3;
 
-/// How numbers become RGB. reflectance: spectra under D65, so that a flat one is grey; at most 1. ratio: the same
-/// without a limit (indices of refraction, roughness). emission: spectra as light, unbounded.
+/// How numbers become RGB. reflectance: spectra under D65 (but for version 0.x), so that a flat one is grey; at most 1.
+/// ratio: the same without a limit (indices of refraction, roughness). emission: spectra as light, unbounded.
 enum class Colour { reflectance, ratio, emission };
 
 /// Indices of refraction, as Mitsuba has them.

@@ -162,9 +162,11 @@ void read_depth(Params& p, bool known) {
   if (node == nullptr) return;
   if (value == nullptr || to_number(*value) != 0.0)
     p.loader.scene.hints.max_depth = hint(p, "max_depth", -1, true);
-  else if (known)
+  else if (known) {
     unsupported(p.loader, *node, "0 shows nothing; it should be 1 (lights alone) or more, or -1 for no limit",
                 "no limit");
+    p.loader.scene.hints.max_depth = -1;
+  }
 }
 
 // Mitsuba 3's film for several sensors side by side.

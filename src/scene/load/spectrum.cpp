@@ -20,10 +20,12 @@ Rgb checked(Loader& loader, const Node& node, Rgb c, Colour kind) {
     c = glm::max(c, Rgb(0));
   }
   if (kind == Colour::reflectance && max_component(c) > 1) {
+    const bool scales = loader.document.old && !is_number;  // as Mitsuba 0.6
     note(loader, node,
          is_number ? "a number above 1 where a share is meant: it was set to 1"
-                   : "a reflectance above 1 would make light from nothing: it was set to 1");
-    c = glm::min(c, Rgb(1));
+                   : fmt::format("a reflectance above 1 would make light from nothing: it was {}",
+                                 scales ? "scaled to 0.99" : "set to 1"));
+    c = scales ? c * (0.99f / max_component(c)) : glm::min(c, Rgb(1));
   }
   return c;
 }

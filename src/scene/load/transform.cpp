@@ -178,7 +178,8 @@ DMat4 transform_of(const Loader& loader, const Node& node) {
 DMat4 to_world(Params& params, const char* name) {
   for (size_t i = 0; i < params.node.children.size(); ++i) {
     const Node& child = params.node.children[i];
-    const bool moves = child.name == name || (child.name == "animation" && params.node.type == "instance");
+    const bool moves = child.name == name ||
+                       (!params.loader.document.old && child.name == "animation" && params.node.type == "instance");
     if (child.tag != "animation" || !moves) continue;
     if (has_transform(params, name)) fail(params.loader, child, "stands beside a <transform>; one of them has to go");
     params.used[i] = true;

@@ -298,6 +298,8 @@ TEST(Bsdf, BumpAndNormalMaps) {
   EXPECT_FLOAT_EQ(m.map_scale, 3);
   EXPECT_FLOAT_EQ(last(bsdf("bumpmap", checker + number("scale", 3) + bsdf("diffuse")), {}, "0.6.0").map_scale, 1);
   EXPECT_NE(last(bsdf("bumpmap", checker + bsdf("diffuse"))).map.texture, none);
+  const std::string scale = "<texture name='scale' type='checkerboard'/>";
+  EXPECT_NE(last(bsdf("bumpmap", scale + bsdf("diffuse")), {}, "0.6.0").map.texture, none);
   EXPECT_NE(last(bsdf("bumpmap", texture("anything") + bsdf("diffuse"))).map.texture, none);
   EXPECT_SAYS(error_of(bsdf("bumpmap", bsdf("diffuse"))), "needs a nested <texture>");
   EXPECT_EQ(last(bsdf("bump", checker + bsdf("diffuse")), {}, "0.4.0").kind, MaterialKind::bumpmap);

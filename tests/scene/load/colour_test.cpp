@@ -101,7 +101,7 @@ TEST(Colour, NumberInASpectrumIsAFlatLight) {
   EXPECT_RGB(light("constant", "<spectrum name='radiance' value='1, 2, 3'/>"), 1, 2, 3, 1e-6);
 }
 
-// XYZ (1, 1, 1) of surfaces too, as in Mitsuba 0.6; the red of a white wall is more than there can be.
+// XYZ (1, 1, 1) of surfaces too, as in Mitsuba 0.6; a white wall, whose red is more than there can be, is scaled.
 TEST(Colour, ListsOfTheOlderVersionAreSeenUnderEqualEnergy) {
   const auto material = [](const std::string& type, const std::string& inside) {
     return load_inside("<bsdf type='" + type + "'>" + inside + "</bsdf>", {}, "0.6.0").materials[0];
@@ -110,8 +110,8 @@ TEST(Colour, ListsOfTheOlderVersionAreSeenUnderEqualEnergy) {
   EXPECT_RGB(material("diffuse", half).reflectance.value, 0.6024, 0.4742, 0.4544, 2e-3);
   EXPECT_RGB(material("diffuse", "<spectrum name='reflectance' filename='flat.spd'/>").reflectance.value, 0.3012,
              0.2371, 0.2272, 1e-3);
-  EXPECT_RGB(material("diffuse", "<spectrum name='reflectance' value='300:1, 900:1'/>").reflectance.value, 1, 0.9484,
-             0.9087, 4e-3);
+  EXPECT_RGB(material("diffuse", "<spectrum name='reflectance' value='300:1, 900:1'/>").reflectance.value, 0.99, 0.7793,
+             0.7467, 4e-3);
   EXPECT_RGB(material("diffuse", "<spectrum name='reflectance' value='.5'/>").reflectance.value, 0.5, 0.5, 0.5, 1e-6);
   EXPECT_RGB(
       material("conductor", "<string name='extEta' value='vacuum'/><spectrum name='eta' value='300:2, 900:2'/>").eta,
@@ -203,6 +203,9 @@ TEST(Colour, ImpossibleOnesAreRepairedAloud) {
   EXPECT_RGB(s.materials[0].reflectance.value, 0, 0.5, 1, 1e-6);
   EXPECT_TRUE(says(s.notes, "negative"));
   EXPECT_TRUE(says(s.notes, "reflectance above 1"));
+  s = load_inside("<bsdf type='diffuse'><rgb name='reflectance' value='0.1, 0.5, 2'/></bsdf>", {}, "0.6.0");
+  EXPECT_RGB(s.materials[0].reflectance.value, 0.0495, 0.2475, 0.99, 1e-6);
+  EXPECT_TRUE(says(s.notes, "scaled to 0.99"));
   EXPECT_RGB(radiance("<rgb name='radiance' value='100, 20, 3'/>"), 100, 20, 3, 1e-6);
 }
 
