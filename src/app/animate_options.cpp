@@ -17,7 +17,8 @@ void check_learning(const AnimateArguments& a, const std::string& integrator) {
   const std::pair<const char*, bool> asked[] = {{"--guide", a.guide != "both"},
                                                 {"--field-memory", !a.field_memory.empty()},
                                                 {"--teach", a.teach.has_value()},
-                                                {"--forget", a.forget.has_value()}};
+                                                {"--forget", a.forget.has_value()},
+                                                {"--even", a.even}};
   for (const auto& [option, given] : asked)
     if (given && !is_guided(integrator))
       throw Error(fmt::format("{}: the integrator {} learns no fields; take {}", option, integrator, what_learns));
@@ -59,6 +60,7 @@ void add_options(CLI::App& command, AnimateArguments& arguments) {
   c->add_option("--guide", a->guide, "which subpaths the learned fields guide: both, camera or light (default both)")
       ->check(CLI::IsMember({"both", "camera", "light"}));
   c->add_option("--field-memory", a->field_memory, "memory that learned fields may take: 512K, 32M (default), 1G");
+  c->add_flag("--even", a->even, "as for ajar render");
   c->add_flag("--limit-fireflies", a->limit_fireflies, "as for ajar render");
   c->add_option("--reference", a->reference, "frames to measure error and flicker against: DIR/ref_%04d.exr");
   c->add_option("--video", a->video, "film to make of the frames with ffmpeg: OUT.mp4, .mov, .mkv, .webm, .gif ...");
@@ -85,6 +87,7 @@ RenderOptions render_options(const AnimateArguments& a, const Scene& scene) {
   o.seed = a.seed;
   o.threads = a.threads;
   set_max_depth(a.max_depth, scene, o);
+  o.even = a.even;
   o.limit_fireflies = a.limit_fireflies;
   check_learning(a, o.integrator);
   check_guide(a.guide, o.integrator);

@@ -25,7 +25,7 @@ struct AnimateArguments {
   int spp = 0, max_depth = not_given, threads = 0;
   uint64_t seed = 0;
   std::optional<double> fps;
-  bool limit_fireflies = false, half = false, quiet = false, lenient = false;
+  bool even = false, limit_fireflies = false, half = false, quiet = false, lenient = false;
 };
 
 /// Adds them to a command, which must not outlive them.

@@ -45,7 +45,8 @@ LearnOptions learn_options(const RenderArguments& a, const std::string& integrat
                                                 {"--field-structure", !a.field_structure.empty()},
                                                 {"--field-rule", !a.field_rule.empty()},
                                                 {"--field-rate", !a.field_rate.empty()},
-                                                {"--train", a.train > 0}};
+                                                {"--train", a.train > 0},
+                                                {"--even", a.even}};
   const bool lights = a.light_choice == "learned";
   if (!may_learn)
     for (const auto& [option, given] : asked)
@@ -152,6 +153,8 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
       ->check(CLI::IsMember({"sobol", "independent"}));
   c->add_option("-D", a->defines, "name=value: a parameter of the scene")->allow_extra_args(false);
   add_time(*c, a->at);
+  c->add_flag("--even", a->even,
+              "as many camera samples in all pixels of a pass; guided integrators give noisy ones up to eight");
   c->add_flag(
       "--limit-fireflies", a->limit_fireflies,
       "darken what is far brighter than other passes saw around it (from the fourth pass on): fewer sparks, and a bias "
@@ -252,6 +255,7 @@ RenderOptions render_options(const RenderArguments& a, Scene& scene, bool planne
                             o.integrator));
   o.heuristic = a.heuristic == "balance" ? Heuristic::balance : Heuristic::power;
   o.sampler = a.sampler == "independent" ? SamplerKind::independent : SamplerKind::sobol;
+  o.even = a.even;
   o.limit_fireflies = a.limit_fireflies;
   o.techniques = !a.techniques.empty();
   o.leaves_out = (a.plan.empty() || a.plan == "auto") && a.save_fields.empty();

@@ -52,6 +52,7 @@ nlohmann::ordered_json options_json(const Run& run, const Film& film) {
   j["light_choice"] = run.light_choice;
   if (o.learn_lights) j["field_memory"] = o.learn.memory;
   if (is_merging(o.integrator)) j["merge_radius"] = o.merge_radius;
+  if (o.even) j["even"] = true;
   if (o.limit_fireflies) j["limit_fireflies"] = true;
   if (o.final_gather > 0) j["final_gather"] = o.final_gather;
   if (!is_guided(o.integrator)) return j;

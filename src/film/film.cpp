@@ -246,13 +246,17 @@ void trim(std::vector<double>& errors) {
   errors.erase(kept, errors.end());
 }
 
-double relative_variance(const Film& film, std::vector<double> variances) {
+std::vector<double> relative_to(const Film& film, std::vector<double> variances) {
   const std::vector<glm::dvec3> mean = means(film);
   const double epsilon = exposed_epsilon(mean);
-  if (!(epsilon > 0)) return 0;
+  if (!(epsilon > 0)) return std::vector<double>(variances.size());
   for (size_t i = 0; i < mean.size(); ++i) variances[i] /= sqr(double(luminance(Rgb(mean[i])))) + epsilon;
-  trim(variances);
-  return std::accumulate(variances.begin(), variances.end(), 0.0) / double(variances.size());
+  return variances;
+}
+
+double trimmed_mean(std::vector<double> errors) {
+  trim(errors);
+  return std::accumulate(errors.begin(), errors.end(), 0.0) / double(errors.size());
 }
 
 }  // namespace ajar

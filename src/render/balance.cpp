@@ -20,15 +20,15 @@ std::vector<double> variances_of(const std::vector<Beyond>& found, double sample
 
 void rebalance(const Film& film, Balance& balance) {
   const Counters& work = balance.work;
-  const double error = estimate_sample_error(film), samples = double(work.camera_paths) / double(film.pixels());
+  const double error = estimate_sample_error(film), samples = balance.passes;
   if (balance.found.empty() || !(samples >= 2) || !(error > 0) || !(error < infinity)) return;
   if (work.beyond > 0) {
-    const double of_variance = relative_variance(film, variances_of(balance.found, samples)) / error;
+    const double of_variance = trimmed_mean(relative_to(film, variances_of(balance.found, samples))) / error;
     const double of_work = double(work.beyond) / double(work.camera_rays + work.light_rays + work.joins);
     const float step = std::clamp(float(std::sqrt(of_variance / of_work)), least_step, most_step);  // (G16)
     balance.goes_on = std::clamp(balance.goes_on * step, Balance::least, Balance::most);
   }
-  balance.work = {};
+  balance.work = {}, balance.passes = 0;
   balance.found.assign(balance.found.size(), {});
 }
 

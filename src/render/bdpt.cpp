@@ -265,10 +265,11 @@ void note_first(const Work& work, First& first) {
 
 void note_beyond(const Work& work, const First& first, const Walk& walk) {
   if (!first.known || walk.sure) return;
-  const float more = brought(work) - first.brought;
+  work.scratch.counters.beyond += work_of(work.scratch.counters) - first.work;
+  if (work.sample.number > 0) return;
+  const float more = (brought(work) - first.brought) * std::sqrt(float(work.sample.count));
   Beyond& found = work.job.beyond[work.sample.path];
   found.sum += more, found.square += sqr(more);
-  work.scratch.counters.beyond += work_of(work.scratch.counters) - first.work;
 }
 
 // What teaches goes on, and takes its numbers.

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "ajar/core/bytes.h"
@@ -9,7 +10,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind checkpoint_kind = {"AJARck22", "checkpoint", "render once with --checkpoint",
+constexpr FileKind checkpoint_kind = {"AJARck23", "checkpoint", "render once with --checkpoint",
                                       "start again without --resume"};
 
 // One list of fields for both ways.
@@ -64,7 +65,18 @@ void plain_fields(Io& io, State& plain) {
 
 template <class Io, class State>
 void balance_fields(Io& io, State& balance) {
-  io.value(balance.goes_on), io.value(balance.work), io.array(balance.found);
+  io.value(balance.goes_on), io.value(balance.passes), io.value(balance.work), io.array(balance.found);
+}
+
+template <class Io, class State>
+void adaptive_fields(Io& io, State& adaptive) {
+  io.array(adaptive.spread), io.value(adaptive.passes), io.array(adaptive.counts), io.value(adaptive.first);
+}
+
+bool is_sound(const Adaptive& a, size_t pixels) {
+  const auto some = [](uint8_t count) { return count >= 1 && count <= Adaptive::most; };
+  return (a.spread.empty() || a.spread.size() == pixels) && (a.counts.empty() || a.counts.size() == pixels) &&
+         std::all_of(a.counts.begin(), a.counts.end(), some) && a.first % 2 == 0;
 }
 
 void read(Reader& r, Pyramid& pyramid) {
@@ -98,6 +110,7 @@ void save_checkpoint(const std::string& path, const std::string& key, const Rend
       w.value(st.first), w.value(st.second), w.array(layer.raw), w.array(layer.weighted);
     w.value(state.light_rate), w.value(state.effort);
     balance_fields(w, state.balance);
+    adaptive_fields(w, state.adaptive);
     plain_fields(w, state.plain);
     write(w, state.learning);
   });
@@ -138,6 +151,8 @@ void load_checkpoint(const std::string& path, const std::string& key, RenderStat
   balance_fields(r, state.balance);
   r.require(state.balance.goes_on >= Balance::least && state.balance.goes_on <= Balance::most);
   r.require(state.balance.found.empty() || state.balance.found.size() == pixels);
+  adaptive_fields(r, state.adaptive);
+  r.require(is_sound(state.adaptive, pixels));
   state.plain.guided = state.plain.with_merging = state.film;  // for their place and filter, which are not in the file
   plain_fields(r, state.plain);
   r.require(state.plain.seen.half.size() == state.plain.seen.sum.size());

@@ -18,23 +18,42 @@ namespace {
 
 uint64_t index_of(const Film& film, int x, int y) { return uint64_t(y) * uint64_t(film.width) + uint64_t(x); }
 
-Sample make_sample(const Job& job, const Film& film, int x, int y) {
+// The numbers of a pixel's k-th sample in a pass: those that come next. Even passes and odd ones have sequences of
+// their own.
+Sampler numbers_of(const Job& job, uint64_t pixel, uint32_t pass, uint32_t k) {
+  uint32_t point = pass;
+  if (job.adaptive) point = job.adaptive->first + 2 * (job.adaptive->spread[pixel].counts[pass % 2] + k) + pass % 2;
+  return make_sampler(job.sampler, job.seed, Side::camera, pixel, point);
+}
+
+// The k-th sample of a pixel in the pass; the first one may teach.
+Sample make_sample(const Job& job, const Film& film, int x, int y, uint32_t k = 0) {
   Sample s;
   s.x = x, s.y = y;
-  s.path = index_of(film, x, y);
+  const uint64_t pixel = index_of(film, x, y);
+  s.path = pixel + k * film.pixels();
   s.pass = film.dropped + film.passes;
-  s.teaches = job.learning && is_recorded(*job.learning, s.path, s.pass, recorded_one_in(*job.learning, film));
-  s.sampler = make_sampler(job.sampler, job.seed, Side::camera, s.path, s.pass);
+  s.number = k, s.count = count_of(job.adaptive, pixel);
+  s.teaches = k == 0 && job.learning && is_recorded(*job.learning, pixel, s.pass, recorded_one_in(*job.learning, film));
+  s.sampler = numbers_of(job, pixel, s.pass, k);
   const Vec2 centre(float(film.x0 + x) + 0.5f, float(film.y0 + y) + 0.5f);
   s.raster = centre + ajar::sample(film.filter, s.sampler.next2(), s.filter);
   if (job.scene->camera.kind == CameraKind::thinlens) s.lens = s.sampler.next2();
-  s.filter *= float(share_of(job, film));
+  s.filter *= float(share_of(job, film)) / float(s.count);
   return s;
 }
 
 bool is_traced(const Job& job, const Film& film, int x, int y) {
   const uint32_t n = share_of(job, film);
   return n == 1 || hash(hash(job.seed, film.dropped + film.passes), index_of(film, x, y)) % n == 0;
+}
+
+// A pixel's samples in the pass but for the first one.
+void add_further(const Job& job, const Film& film, std::vector<Halves::Part>& samples) {
+  const size_t pixels = samples.size();
+  for (size_t i = 0; i < pixels; ++i)
+    for (uint32_t k = 1; k < samples[i].sample.count; ++k)
+      samples.push_back({make_sample(job, film, samples[i].sample.x, samples[i].sample.y, k)});
 }
 
 // Not those that are recorded more than others.
@@ -47,6 +66,12 @@ bool trace_half(const Job& job, Sample sample, uint32_t recorded, Scratch& scrat
   scratch.clock = is_timed(sample) ? clock_ticks() : 0;
   job.light_half(job, sample, scratch);
   return scratch.splats->size() > splats;
+}
+
+// Notes what one sample of a pixel brought.
+void note(PixelSpread& spread, uint32_t pass, float brought) {
+  spread.sum += brought, spread.square += sqr(brought);
+  ++spread.counts[pass % 2];
 }
 
 // What the sample brings its pixel, filtered.
@@ -81,14 +106,13 @@ void trace_light_halves(const Job& job, Film& film, uint32_t chunk, Scratch& scr
   for (int row = bounds.y0; row < bounds.y1; ++row)
     for (int column = bounds.x0; column < bounds.x1; ++column) {
       const int x = (column + shift.x) % film.width, y = (row + shift.y) % film.height;
-      if (is_traced(job, film, x, y))
-        halves.samples.push_back({make_sample(job, film, x, y)});
-      else
-        film.camera[index_of(film, x, y)] = Rgb(0);
+      film.camera[index_of(film, x, y)] = Rgb(0);
+      if (is_traced(job, film, x, y)) halves.samples.push_back({make_sample(job, film, x, y)});
     }
   clear(halves.store), clear(scratch.traced);
   halves.photons.clear(), halves.few.clear();
   const size_t count = halves.samples.size();
+  add_further(job, film, halves.samples);
   halves.splat_counts = float(share_of(job, film));
   if (count > 0) halves.splat_counts *= float(double(count) / light_halves(count, job.light_rate));
   if (!job.light_half) return;
@@ -108,8 +132,12 @@ void trace_light_halves(const Job& job, Film& film, uint32_t chunk, Scratch& scr
 void trace_camera_halves(const Job& job, Film& film, OfPool of, Scratch& scratch) {
   if (job.vpls && !job.guided) start(job.vpls->store, scratch.visibility);
   for (auto& [sample, splat] : scratch.halves->samples)
-    if (of.pools == 1 || pool_of(job, sample, of.pools) == of.pool)
-      film.camera[sample.path] = trace_pixel(job, sample, splat, scratch);
+    if (of.pools == 1 || pool_of(job, sample, of.pools) == of.pool) {
+      const Rgb value = trace_pixel(job, sample, splat, scratch);
+      const uint64_t pixel = index_of(film, sample.x, sample.y);
+      film.camera[pixel] += value;
+      if (job.adaptive) note(job.adaptive->spread[pixel], sample.pass, luminance(value) * float(sample.count));
+    }
 }
 
 Rgb trace_alone(const Job& job, const Film& film, uint32_t pixel, Scratch& scratch) {

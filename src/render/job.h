@@ -8,6 +8,7 @@
 #include "ajar/join/store.h"
 #include "ajar/join/visibility.h"
 #include "ajar/path/record.h"
+#include "ajar/render/adaptive.h"
 #include "ajar/render/balance.h"
 #include "ajar/render/learning.h"
 #include "ajar/render/ledger.h"
@@ -52,6 +53,7 @@ struct Job {
                                        ///< one in inner_photons; null: none
   double kept = 0;                     ///< light vertices of a chunk that go into its pool, about
   float effort = 1;                    ///< how much is spent on joins (J8)
+  Adaptive* adaptive = nullptr;        ///< camera samples of each pixel in a pass; null: one
   Beyond* beyond = nullptr;            ///< per pixel, see Balance; null: not looked at
   bool merges_alone = false;           ///< nothing but merges brings light, so they need no weights
   int final_gather = 0;                ///< of photon, see RenderOptions
@@ -66,11 +68,12 @@ struct Job {
 /// found.
 struct Sample {
   int x = 0, y = 0;
-  uint64_t path = 0;  ///< index of the pixel; of its further light halves so many times the number of pixels more
+  uint64_t path = 0;  ///< index of the pixel; of its further samples so many times the number of pixels more
+  uint32_t number = 0, count = 1;  ///< among how many of the pixel in the pass
   uint32_t pass = 0;
   Vec2 raster{0}, lens{0};
-  float filter = 1;  ///< what the filter makes of the camera path's radiance, times that for how many samples of the
-                     ///< pass it stands, where not all are traced
+  float filter = 1;  ///< what the filter makes of the camera path's radiance, over their number, times that for how
+                     ///< many samples of the pass it stands, where not all are traced
   Sampler sampler;
   bool teaches = false;  ///< what its subpaths see is recorded
   Rgb value{0};          ///< radiance found by the camera path, unfiltered
@@ -82,7 +85,7 @@ struct Halves {
     Sample sample;
     bool splat = false;  ///< its light subpath brought something
   };
-  std::vector<Part> samples;
+  std::vector<Part> samples;  ///< first of each pixel one, then further ones of some
   float splat_counts = 1;  ///< for how many light subpaths each one's splats stand, where fewer than pixels are traced
   LightStore store;        ///< of what the chunk's light subpaths left, what goes into its pool
   Photons photons, few;

@@ -268,10 +268,13 @@ void try_plain(const Job& job, const RenderOptions& options, std::vector<Scratch
   const uint32_t all = square_count(film), count = std::clamp(all / 16, least_squares, most_squares);
   const std::vector<uint32_t> squares = spread_squares(film, std::min(count, all));
   if (squares.empty()) return;
-  const Job without = plainly(job);
+  Job without = plainly(job);
+  without.seed = hash(job.seed, 0x91a1);  // what one looks at is in no image
+  without.adaptive = nullptr;
   trace_to(film.passes, without, film, squares, scratches, plain);
   const Counters& n = state.stats.counters;
-  const double cost = ray_cost(merges) * double(ray_count(n)) / double(n.camera_paths);
+  const double cost =
+      ray_cost(merges) * double(ray_count(n)) / double(n.camera_paths) * samples_of_pass(state.adaptive);
   const double samples = double(plain.seen.passes) * double(plain.seen.sum.size());
   const double pace = std::clamp(cost * samples / (path_ray * double(plain.rays)), 1.0, fastest);
   trace_to(uint32_t(pace * film.passes / 2) * 2, without, film, squares, scratches, plain);

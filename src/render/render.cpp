@@ -149,6 +149,22 @@ void balance_pass(bool plain, RenderState& state, Job& job) {
   job.beyond = told ? balance.found.data() : nullptr;
 }
 
+// How many camera samples each pixel has in the pass at hand.
+void adapt_pass(const RenderOptions& options, RenderState& state, Job& job) {
+  const Film& film = state.film;
+  Adaptive& adaptive = state.adaptive;
+  const bool told = job.guided && !options.even && !in_training(state.learning) &&
+                    state.learning.fields.generation >= blind_generations;
+  job.adaptive = told ? &adaptive : nullptr;
+  if (!told) return;
+  if (adaptive.spread.empty()) {
+    adaptive.spread.resize(film.pixels());
+    adaptive.first = film.dropped + (film.passes + 1) / 2 * 2;
+  } else if (film.chunks == 0 && film.passes >= 4 && std::has_single_bit(film.passes)) {
+    allot(film, adaptive);
+  }
+}
+
 // How many light subpaths are traced in the pass at hand, and how much their joins may cost. Where camera vertices
 // choose among those of many tiles, a few are as good as many. While fields know little, all of them teach; a photon
 // map has use for all.
@@ -374,6 +390,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
     threads.run([&] {
       plan_pass(joined, plain, state, job);
       balance_pass(plain, state, job);
+      adapt_pass(options, state, job);
     });
     const bool joins_vpls = integrator.vpls && !in_training(state.learning);
     const bool in_halves = integrator.light_half && !plain && !joins_vpls;
@@ -406,6 +423,8 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
       s.counters = {};
       s.rejected = 0;
     }
+    if (film.chunks == 0 && job.beyond) ++state.balance.passes;
+    if (film.chunks == 0 && job.adaptive) ++state.adaptive.passes;
     if (job.learning && !plain && film.chunks == 0) threads.run([&] { teach(scene, state, options); });
     // Who watches, measuring errors perhaps, does so on his own time.
     read_clocks();

@@ -115,6 +115,8 @@ const Option options_table[] = {
      [](const RenderOptions& o) { return Json(o.merge_radius); }, if_it_merges},
     {"final_gather", [](RenderOptions& o, const Element& e) { o.final_gather = int(integer(e, 1, 1024)); },
      [](const RenderOptions& o) { return Json(o.final_gather); }, if_it_gathers},
+    {"even", [](RenderOptions& o, const Element& e) { o.even = flag(e); },
+     [](const RenderOptions& o) { return Json(o.even); }, if_guided},
     {"limit_fireflies", [](RenderOptions& o, const Element& e) { o.limit_fireflies = flag(e); },
      [](const RenderOptions& o) { return Json(o.limit_fireflies); }},
     {"train", [](RenderOptions& o, const Element& e) { o.learn.train = uint32_t(integer(e, 0, 1 << 20)); },

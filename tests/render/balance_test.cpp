@@ -24,7 +24,7 @@ Film even_film() {
 // Samples that bring some pixels something behind their first vertex; others vary as much in all of them.
 Balance balance_of(const Film& film, double variance, double work) {
   Balance b;
-  b.work.camera_paths = passes * film.pixels();
+  b.passes = passes;
   b.work.camera_rays = 600000, b.work.light_rays = 100000, b.work.joins = 300000;
   b.work.beyond = uint64_t(1000000 * work);
   // Half of the samples bring x, the others nothing.

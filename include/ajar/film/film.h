@@ -96,11 +96,13 @@ ErrorEstimate estimate_error(const Film& film);
 /// Of one sample: relMSE without the worst 0.1 % of pixels, times passes, of the image exposed to a mean luminance of a
 /// fifth, so that it does not depend on the light's unit.
 double estimate_sample_error(const Film& film);
-/// The same of something else that varies from sample to sample, given per pixel [luminance^2]: relative to the image,
-/// without the worst 0.1 % of pixels.
-double relative_variance(const Film& film, std::vector<double> variances);
+/// Of something else that varies from sample to sample, given per pixel [luminance^2]: relative to the image, exposed
+/// likewise; zeros where that is black.
+std::vector<double> relative_to(const Film& film, std::vector<double> variances);
 /// Leaves out the worst 0.1 % of pixels, given one error each; the others change places.
 void trim(std::vector<double>& errors);
+/// Mean without them.
+double trimmed_mean(std::vector<double> errors);
 inline double estimated_error(const Film& film) { return estimate_error(film).relmse; }
 
 }  // namespace ajar

@@ -9,8 +9,8 @@
 
 namespace ajar {
 
-/// Sums over the samples of a pixel: luminance found behind the first vertex that is joined, by subpaths that roulette
-/// might have ended.
+/// Sums over the passes: luminance found in a pixel behind the first vertex that is joined, by a camera subpath that
+/// roulette might have ended; of one in each pass, as it varies in the mean of all.
 struct Beyond {
   float sum = 0, square = 0;
 };
@@ -20,7 +20,8 @@ struct Beyond {
 struct Balance {
   static constexpr float least = 1, most = 16;
   float goes_on = least;      ///< times what (G6) and (G15) ask for
-  Counters work;              ///< of the passes since it was looked at
+  uint32_t passes = 0;        ///< since it was looked at
+  Counters work;              ///< of these
   std::vector<Beyond> found;  ///< per pixel, of the same; empty until there are any
 };
 /// Looks at it anew, and clears the sums. Does nothing where there are none.

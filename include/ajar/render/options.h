@@ -30,6 +30,7 @@ struct RenderOptions {
   LearnOptions learn;      ///< guided integrators, and others that learn lights
   bool learn_lights = false;  ///< path and bdpt: learn which lights cells see (LearnOptions::lights), and nothing else
   bool leaves_out = false;    ///< see may_leave_out
+  bool even = false;  ///< as many camera samples in all pixels; else guided integrators give noisy ones more (A1)
   bool limit_fireflies = false;  ///< of the developed image (film/fireflies.h)
   bool techniques = false;       ///< keep an image of every (s, t) with s + t <= most_vertices
 };

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "ajar/film/pyramid.h"
+#include "ajar/render/adaptive.h"
 #include "ajar/render/balance.h"
 #include "ajar/render/learning.h"
 #include "ajar/render/ledger.h"
@@ -37,8 +38,9 @@ struct RenderState {
   /// passes.
   float effort = 0.5f;
   static constexpr float least_effort = 1.0f / 16;
-  Balance balance;  ///< of guided integrators
-  Plain plain;      ///< when RenderOptions::leaves_out
+  Balance balance;    ///< of guided integrators
+  Adaptive adaptive;  ///< likewise, unless RenderOptions::even
+  Plain plain;        ///< when RenderOptions::leaves_out
 };
 
 /// Seen between batches of chunks, a few times a second at most for large images; return false to stop. May be empty.
