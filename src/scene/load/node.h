@@ -28,7 +28,7 @@ struct Document {
   std::map<std::string, std::string> aliases;  ///< <alias>: new name to id
   std::vector<std::string> notes;
   uint64_t content = 0;  ///< checksum of the texts of all files
-  bool old = false;      ///< version 0.x: a few defaults differ
+  bool old = false;      ///< version 0.x, and no to_world in the scene's file: a few defaults differ
 };
 
 /// Reads a scene. name stands in messages, folder resolves relative names. Throws Error.

@@ -14,14 +14,16 @@ constexpr const char* constants[] = {"uniform", "d65",       "srgb",      "srgb_
                                      "regular", "irregular", "blackbody", "rawconstant"};
 constexpr const char* types[] = {"bitmap", "checkerboard", "gridtexture", "scale", "mesh_attribute", "vertexcolors"};
 
-// Affine map of (u, v): scale and offset (0.x), then the transform (2.x, 3.x).
+// Affine map of (u, v): scale and offset (0.x), then the transform (2.x, 3.x). Later versions, which read the names of
+// 0.x, move before they scale.
 Mat3 uv_map(Params& p) {
   const double uniform = number(p, "uvscale", number(p, "uv_scale", 1));
   DMat4 m(1);
   m[0][0] = number(p, "uscale", uniform);
   m[1][1] = number(p, "vscale", uniform);
-  m[3][0] = number(p, "uoffset", 0);
-  m[3][1] = number(p, "voffset", 0);
+  const bool old = p.loader.document.old;
+  m[3][0] = number(p, "uoffset", 0) * (old ? 1 : m[0][0]);
+  m[3][1] = number(p, "voffset", 0) * (old ? 1 : m[1][1]);
   if (const Node* node = find(p, {"to_uv"})) {
     if (node->tag != "transform") fail(p.loader, *node, "should be a <transform>");
     m = transform_of(p.loader, *node) * m;

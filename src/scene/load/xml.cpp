@@ -285,6 +285,19 @@ void read_children(Reader& r, const Source& s, const pugi::xml_node& xml, Node& 
   }
 }
 
+// Mitsuba 0.6 has toWorld alone. Versions 2 and 3 have to_world, and read files of 0.x by new names, not by old rules.
+void heed_spelling(Reader& r, const Source& s) {
+  const pugi::xml_node moved = r.root.find_node([](const pugi::xml_node& node) {
+    const std::string_view tag = node.name(), name = node.attribute("name").value();
+    return name == "to_world" && (tag == "transform" || tag == "animation");
+  });
+  if (!r.document.old || !moved) return;
+  r.document.old = false;
+  r.document.notes.push_back(one_line(
+      fmt::format("{}:{}: version {} does not know to_world: read as a scene of version 2", r.document.files[s.file],
+                  line_at(s, moved.offset_debug()), shortened(*attribute(r.document.root, "version")))));
+}
+
 }  // namespace
 
 Document read_document(const std::string& text, const std::string& folder, const std::string& name,
@@ -305,6 +318,7 @@ Document read_document(const std::string& text, const std::string& folder, const
   document.root = make_node(r, source, r.root);
   const std::string* version = attribute(document.root, "version");
   document.old = version != nullptr && version->starts_with("0.");
+  heed_spelling(r, source);
   read_children(r, source, r.root, document.root, 0);
   for (const auto& [key, value] : defines)
     if (!r.declared.contains(key) && !r.used.contains(key)) {

@@ -37,6 +37,15 @@ TEST(TextureFile, StandsUprightOnObj) {
 TEST(TextureFile, ScaleOffsetAndTransform) {
   const Scene old = with(bitmap(nearest + "<float name='uscale' value='0.5'/><float name='voffset' value='0.5'/>"));
   EXPECT_RGB(at(old, 0.75f, 0.25f), 0, 0, 1, 1e-6);  // u 0.375, v 0.75
+  const auto moved = [&](const std::string& version) {
+    return load_inside("<bsdf type='diffuse'>" +
+                           bitmap("<float name='uscale' value='2'/><float name='uoffset' value='.25'/>") + "</bsdf>",
+                       {}, version)
+        .textures.at(0)
+        .to_uv;
+  };
+  EXPECT_EQ(moved("0.6.0") * Vec3(1, 0, 1), Vec3(2.25f, 0, 1));
+  EXPECT_EQ(moved("2.0.0") * Vec3(1, 0, 1), Vec3(2.5f, 0, 1));  // in Mitsuba 2 and 3 what is moved is scaled
   const Scene steps =
       with(bitmap(nearest + "<transform name='to_uv'><scale x='0.5'/><translate y='0.5'/></transform>"));
   EXPECT_RGB(at(steps, 0.75f, 0.25f), 0, 0, 1, 1e-6);
@@ -138,7 +147,7 @@ TEST(TextureKinds, Grid) {
   EXPECT_RGB(mean(s, s.materials[0].reflectance), 0.20792, 0.20792, 0.20792, 1e-6);  // 0.98 * 0.98 of it ground
   s = grid(
       "<rgb name='color0' value='.1 .2 .3'/><rgb name='color1' value='.9'/><float name='lineWidth' value='.25'/>"
-      "<float name='uvscale' value='2'/><float name='uoffset' value='.5'/><string name='filterType' value='ewa'/>");
+      "<float name='uvscale' value='2'/><float name='uoffset' value='.25'/><string name='filterType' value='ewa'/>");
   EXPECT_EQ(s.notes.size(), 2u);                        // no shape, no light
   EXPECT_RGB(at(s, 0, 0.25f), 0.1, 0.2, 0.3, 1e-6);     // u 0.5, v 0.5
   EXPECT_RGB(at(s, 0.2f, 0.25f), 0.9, 0.9, 0.9, 1e-6);  // u 0.9

@@ -89,7 +89,7 @@ TEST(Transform, WrongOnesAreErrors) {
 TEST(Transform, UsualUp) {
   const auto up = [](const std::string& origin, const std::string& more, const char* version) {
     const Scene s = load_scene_text(std::string("<scene version='") + version +
-                                        "'><sensor type='perspective'><transform name='to_world'><lookat origin='" +
+                                        "'><sensor type='perspective'><transform name='toWorld'><lookat origin='" +
                                         origin + "' target='0,0,0'" + more + "/></transform></sensor></scene>",
                                     "", "test.xml");
     return Vec3(s.camera.to_world[1]);

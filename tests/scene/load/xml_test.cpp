@@ -49,6 +49,47 @@ TEST(Names, MayBeMixedInOneElement) {
   EXPECT_RGB(m.specular.value, 0.5, 0.5, 0.5, 1e-6);
 }
 
+// Mitsuba 0.6 knows toWorld alone; 2 and 3 read older files by new names, not by old rules.
+TEST(Names, ToWorldIsOfVersion2) {
+  const auto scene = [](const std::string& name) {
+    return load_scene_text(
+        "<scene version='0.5.0'>\n<sensor type='perspective'/><sensor type='orthographic'/>\n"
+        "<bsdf type='roughconductor' id='metal'/>\n"
+        "<bsdf type='roughplastic' id='m'><spectrum name='diffuseReflectance' value='300:.5, 900:.5'/>"
+        "<float name='intIOR' value='1.6'/><float name='extIOR' value='1'/></bsdf>\n"
+        "<shape type='sphere'><ref id='m'/><transform name='" +
+            name + "'><translate x='3'/></transform></shape></scene>",
+        assets(), "test.xml", {});
+  };
+  const std::string told = "test.xml:5: version 0.5.0 does not know to_world: read as a scene of version 2";
+  const Scene older = scene("toWorld");
+  EXPECT_EQ(older.camera.kind, CameraKind::orthographic);       // the last
+  EXPECT_RGB(older.materials[0].eta, 0.2, 0.924, 1.102, 1e-2);  // of copper in air
+  EXPECT_GT(older.materials[1].reflectance.value.x, 0.55f);     // under equal energy
+  EXPECT_TRUE(says(older.notes, "sun and sky were added"));
+  EXPECT_FALSE(says(older.notes, "to_world"));
+  const Scene later = scene("to_world");
+  EXPECT_EQ(later.camera.kind, CameraKind::perspective);
+  EXPECT_EQ(later.materials[0].eta, Rgb(0));
+  EXPECT_RGB(later.materials[1].reflectance.value, 0.5, 0.5, 0.5, 1e-6);
+  EXPECT_FLOAT_EQ(later.materials[1].ior, 1.6f);  // in capitals all the same
+  EXPECT_TRUE(says(later.notes, "the image will be black"));
+  EXPECT_TRUE(says(later.notes, told));
+  EXPECT_FLOAT_EQ(later.shapes[0].to_world[3].x, 3);
+}
+
+TEST(Names, ToWorldBesideItsOlderSpellingAndInNewerFiles) {
+  const auto placed = [](const std::string& name) {
+    return "<shape type='sphere'><transform name='" + name + "'><translate x='3'/></transform></shape>";
+  };
+  const std::string words = "does not know to_world";
+  const Scene both = load_inside(placed("toWorld") + placed("to_world"), {}, "0.6.0");
+  EXPECT_TRUE(says(both.notes, "test.xml:2: version 0.6.0 " + words));
+  for (const Shape& shape : both.shapes) EXPECT_FLOAT_EQ(shape.to_world[3].x, 3);
+  EXPECT_FALSE(says(load_inside(placed("to_world"), {}, "2.0.0").notes, words));
+  EXPECT_FALSE(says(load_inside("<default name='to_world' value='1'/>", {}, "0.6.0").notes, words));
+}
+
 TEST(Parameters, DefaultIsPutInAndOverruled) {
   const std::string text =
       "<default name='r' value='0.25'/><bsdf type='diffuse' id='m'><rgb name='reflectance' value='$r'/></bsdf>" + ball;
