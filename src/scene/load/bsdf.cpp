@@ -296,6 +296,17 @@ void mixture(Params& p, Material& m) {
   for (size_t i = 0; i < count; ++i) m.weights[i] = float((*weights)[i] / std::max(sum, 1.0));
 }
 
+// What Mitsuba 3.7.1 added to bump and normal maps. Left out of a file it is true there, but is not told of each time.
+void refuse_folds(Params& p) {
+  const bool flips = boolean(p, "flip_invalid_normals", false), shades = boolean(p, "use_shadowing_function", false);
+  if (flips || shades)
+    note(p.loader, p.node,
+         fmt::format("{} is not supported: normals are bent as in Mitsuba up to 3.7.0, as with false",
+                     flips && shades ? "flip_invalid_normals, like use_shadowing_function,"
+                     : flips         ? "flip_invalid_normals"
+                                     : "use_shadowing_function"));
+}
+
 void bumpmap(Params& p, Material& m) {
   if (!p.loader.document.old) m.map_scale = float(number(p, "scale", 1));  // 0.x has a texture for that
   const Node* map = nullptr;
@@ -308,6 +319,7 @@ void bumpmap(Params& p, Material& m) {
   }
   if (map == nullptr) fail(p.loader, p.node, "needs a nested <texture> of heights");
   m.map = slot_of(p.loader, *map, Colour::ratio);
+  refuse_folds(p);
   take_nested(p, m, 1, 1);
 }
 
@@ -344,6 +356,7 @@ void normalmap(Params& p, Material& m) {
   m.map = has(p, "filename") ? normals_of_file(p) : main_slot(p, {"normalmap", "map"}, missing, Colour::ratio);
   if (m.map.texture == none && m.map.value == missing.value)
     fail(p.loader, p.node, "needs <texture name=\"normalmap\" ...>");
+  refuse_folds(p);
   take_nested(p, m, 1, 1);
 }
 

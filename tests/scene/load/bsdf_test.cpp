@@ -404,5 +404,29 @@ TEST(Bsdf, PartsOfABlendMayBendTheNormal) {
   EXPECT_TRUE(last(bent).splits);
 }
 
+// Mitsuba 3.7.1 folds bent normals back, and shades what they turn away; before, and with false, it does not.
+TEST(Bsdf, FoldedNormalsAreToldOf) {
+  const auto notes = [](const std::string& type, const std::string& inside) {
+    return load_inside("<bsdf type='" + type +
+                       "'><texture name='normalmap' type='checkerboard'/><bsdf type='diffuse'/>" + inside + "</bsdf>")
+        .notes;
+  };
+  const std::string flip = "<boolean name='flip_invalid_normals' value='", shade =
+                                                                               "<boolean name='use_shadowing_function' "
+                                                                               "value='";
+  const std::string on = "true'/>", off = "false'/>", words = "normals are bent as in Mitsuba up to 3.7.0";
+  for (const std::string type : {"bumpmap", "normalmap"}) {
+    for (const std::string& inside : {std::string(), flip + off, flip + off + shade + off}) {
+      EXPECT_FALSE(says(notes(type, inside), words)) << inside;
+      EXPECT_FALSE(says(notes(type, inside), "not used")) << inside;
+    }
+    EXPECT_TRUE(says(notes(type, flip + on), "flip_invalid_normals is not supported: " + words));
+    EXPECT_TRUE(says(notes(type, flip + off + shade + on), "use_shadowing_function is not supported: " + words));
+    int count = 0;
+    for (const std::string& note : notes(type, flip + on + shade + on)) count += note.find("_normals") != note.npos;
+    EXPECT_EQ(count, 1);
+  }
+}
+
 }  // namespace
 }  // namespace ajar
