@@ -23,12 +23,21 @@ Light make_light(Params& p, LightKind kind) {
   return light;
 }
 
+// Where a list of wavelengths would stand, or a number in its place: a <spectrum>, or the value of a plugin called so.
+const Node* list_in(const Node& node) {
+  if (node.tag == "spectrum" && node.type.empty()) return &node;
+  if (node.type == "spectrum")
+    for (const Node& child : node.children)
+      if (child.name == "value" && child.tag != "rgb") return &child;
+  return nullptr;
+}
+
 // What a colour of light is multiplied by: a number in a <spectrum> is a flat list to Mitsuba 3, and so of the tint of
 // equal energy. In version 0.x it is white.
 Rgb tint(Params& p, const char* name) {
   const Node* node = find(p, {name});
-  const bool spectrum = node != nullptr && node->tag == "spectrum" && node->type.empty();
-  const std::string* value = spectrum ? attribute(*node, "value") : nullptr;
+  const Node* list = node != nullptr ? list_in(*node) : nullptr;
+  const std::string* value = list != nullptr ? attribute(*list, "value") : nullptr;
   const auto numbers = value == nullptr || p.loader.document.old ? std::nullopt : to_numbers(*value);
   if (!numbers || numbers->size() != 1) return Rgb(1);
   return rgb_of_list({{300, 1}, {900, 1}}, Colour::emission);

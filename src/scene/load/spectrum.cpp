@@ -119,12 +119,15 @@ double kelvin_of(const Loader& loader, const Node& node, std::string_view value)
   return *kelvin;
 }
 
+// Whether a <spectrum> or <texture>, which are one to Mitsuba 3, has a type.
+bool is_plugin(const Node& node) { return (node.tag == "spectrum" || node.tag == "texture") && !node.type.empty(); }
+
 // The texture or spectrum inside a d65, if any; its color is none.
 const Node* lit(Params& p) {
   const Node* found = nullptr;
   for (size_t i = 0; i < p.node.children.size(); ++i) {
     const Node &child = p.node.children[i], &meant = follow(p.loader, child);
-    if (child.name == "color" || (!is_texture(meant) && (meant.tag != "spectrum" || meant.type.empty()))) continue;
+    if (child.name == "color" || (!is_texture(meant) && !is_plugin(meant))) continue;
     if (found != nullptr) fail(p.loader, child, "is the second texture or spectrum in a d65; leave one of them out");
     found = &child;
     p.used[i] = true;
@@ -132,8 +135,10 @@ const Node* lit(Params& p) {
   return found;
 }
 
-// values and wavelengths in separate strings (Mitsuba 2, 3)
+// values and wavelengths in separate strings (Mitsuba 2, 3), or one <spectrum> of both (from 3.7 on)
 Rgb tabulated(Params& p, Colour kind) {
+  if (const Node* list = find(p, {"value"}); list != nullptr && list->tag == "spectrum")
+    return colour_of(p.loader, *list, kind);
   const auto values = to_numbers(text(p, "values", text(p, "value", "")));
   if (!values || values->empty()) fail(p.loader, p.node, "needs <string name=\"values\" value=\"...\"/>");
   List list;
@@ -152,6 +157,17 @@ Rgb tabulated(Params& p, Colour kind) {
   return of_list(p.loader, p.node, list, kind);
 }
 
+// What stands in the elements <rgb> and <spectrum>, as plugins of these names (from Mitsuba 3.7 on).
+Rgb spelt_out(Params& p, Colour kind) {
+  const bool list = p.node.type == "spectrum";
+  const Node* name = list ? find(p, {"filename"}) : nullptr;
+  if (name != nullptr)
+    return of_list(p.loader, p.node, pairs_of_file(p.loader, *name, value_of(p.loader, *name)), kind);
+  if (!has(p, "value"))
+    fail(p.loader, p.node, fmt::format("needs <{} name=\"value\" value=\"...\"/>", list ? "spectrum" : "rgb"));
+  return colour(p, "value", Rgb(0), kind);
+}
+
 Rgb plugin_spectrum(Loader& loader, const Node& node, Colour kind) {
   Params p(loader, node);
   const Open open(loader, node);
@@ -165,6 +181,8 @@ Rgb plugin_spectrum(Loader& loader, const Node& node, Colour kind) {
     c = colour(p, "color", Rgb(1), kind) * float(number(p, "scale", 1));
   } else if (node.type == "srgb" || node.type == "srgb_d65") {
     c = colour(p, "color", Rgb(1), kind) * float(number(p, "scale", 1));
+  } else if (node.type == "rgb" || node.type == "spectrum") {
+    c = spelt_out(p, kind);
   } else if (node.type == "blackbody") {
     const double kelvin = kelvin_of(loader, node, text(p, "temperature", "0"));
     c = rgb_of_blackbody(kelvin) * float(number(p, "scale", 1));
@@ -172,8 +190,8 @@ Rgb plugin_spectrum(Loader& loader, const Node& node, Colour kind) {
     c = tabulated(p, kind);
   } else {
     fail(loader, node,
-         "unknown spectrum; supported: uniform, d65, srgb, srgb_d65, rawconstant, blackbody, regular, irregular, and "
-         "textures");
+         "unknown spectrum; supported: uniform, d65, rgb, srgb, srgb_d65, spectrum, rawconstant, blackbody, regular, "
+         "irregular, and textures");
   }
   finish(p);
   return c;
@@ -207,7 +225,7 @@ Rgb colour_of(Loader& loader, const Node& node, Colour kind) {
 
 const Node& meant_by(Loader& loader, const Node& node) {
   const Node& meant = follow(loader, node);
-  if (meant.tag != "spectrum" || meant.type != "d65") return meant;
+  if (!is_plugin(meant) || meant.type != "d65") return meant;
   Params p(loader, meant);
   const Node* inner = lit(p);
   if (inner == nullptr) return meant;

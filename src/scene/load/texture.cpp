@@ -10,8 +10,8 @@ namespace ajar {
 namespace {
 
 // What a <spectrum> may be beside a texture.
-constexpr const char* constants[] = {"uniform", "d65",       "srgb",      "srgb_d65",
-                                     "regular", "irregular", "blackbody", "rawconstant"};
+constexpr const char* constants[] = {"uniform", "d65",       "rgb",       "srgb",        "srgb_d65",
+                                     "regular", "irregular", "blackbody", "rawconstant", "spectrum"};
 constexpr const char* types[] = {"bitmap", "checkerboard", "gridtexture", "scale", "mesh_attribute", "vertexcolors"};
 
 // Affine map of (u, v): scale and offset (0.x), then the transform (2.x, 3.x). Later versions, which read the names of

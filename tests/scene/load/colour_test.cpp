@@ -198,6 +198,55 @@ TEST(Colour, SpectrumPlugins) {
              0.5, 0.5, 0.5, 1e-6);
 }
 
+// <texture> and <spectrum> are one to Mitsuba 3.
+TEST(Colour, WhatALightShowsIsATextureOrASpectrum) {
+  const auto light = [](const std::string& tag, const std::string& inside) {
+    return load_inside("<shape type='sphere'><emitter type='area'><" + tag + " name='radiance' type='d65'>" + inside +
+                       "</" + tag + "></emitter></shape>")
+        .lights[0]
+        .radiance;
+  };
+  for (const std::string tag : {"spectrum", "texture"}) {
+    EXPECT_NE(light(tag, "<texture type='checkerboard'/>").texture, none) << tag;
+    for (const std::string inner : {"spectrum", "texture"})
+      EXPECT_RGB(light(tag, "<" + inner + " type='srgb'><rgb name='color' value='.1 .2 .3'/></" + inner + ">").value,
+                 0.1, 0.2, 0.3, 1e-6);
+    EXPECT_RGB(light(tag, "").value, 1, 1, 1, 1e-6);
+  }
+}
+
+TEST(Colour, ElementsAsPlugins) {
+  const auto plugin = [](const std::string& tag, const std::string& name, const std::string& type,
+                         const std::string& inside) {
+    return "<" + tag + " name='" + name + "' type='" + type + "'>" + inside + "</" + tag + ">";
+  };
+  const std::string three = "<rgb name='value' value='.1 .2 .3'/>", one = "<float name='value' value='.5'/>",
+                    list = "<spectrum name='value' value='300:.5, 900:.5'/>",
+                    file = "<string name='filename' value='flat.spd'/>";
+  for (const std::string tag : {"spectrum", "texture"}) {
+    EXPECT_RGB(reflectance(plugin(tag, "reflectance", "rgb", three)), 0.1, 0.2, 0.3, 1e-6);
+    EXPECT_RGB(reflectance(plugin(tag, "reflectance", "spectrum", one)), 0.5, 0.5, 0.5, 1e-6);
+    EXPECT_RGB(reflectance(plugin(tag, "reflectance", "spectrum", list)), 0.5, 0.5, 0.5, 1e-6);
+    EXPECT_RGB(reflectance(plugin(tag, "reflectance", "spectrum", file)), 0.25, 0.25, 0.25, 1e-6);
+    EXPECT_RGB(radiance(plugin(tag, "radiance", "rgb", three)), 0.1, 0.2, 0.3, 1e-6);
+    // as <spectrum value=>: of the tint of equal energy, a number too
+    for (const std::string& inside : {one, list})
+      EXPECT_RGB(radiance(plugin(tag, "radiance", "spectrum", inside)), 0.6024, 0.4742, 0.4544, 2e-3);
+  }
+  const auto error = [&](const std::string& type) {
+    return error_of("<bsdf type='diffuse'>" + plugin("texture", "reflectance", type, "") + "</bsdf>");
+  };
+  EXPECT_SAYS(error("rgb"), "needs <rgb name=\"value\" value=\"...\"/>");
+  EXPECT_SAYS(error("spectrum"), "needs <spectrum name=\"value\" value=\"...\"/>");
+}
+
+TEST(Colour, TablesInOneSpectrum) {
+  for (const std::string type : {"regular", "irregular"})
+    EXPECT_RGB(reflectance("<spectrum name='reflectance' type='" + type +
+                           "'><spectrum name='value' value='300:.3, 600:.3, 900:.3'/></spectrum>"),
+               0.3, 0.3, 0.3, 1e-6);
+}
+
 TEST(Colour, ImpossibleOnesAreRepairedAloud) {
   Scene s = load_inside("<bsdf type='diffuse'><rgb name='reflectance' value='-0.1, 0.5, 2'/></bsdf>");
   EXPECT_RGB(s.materials[0].reflectance.value, 0, 0.5, 1, 1e-6);
