@@ -204,6 +204,9 @@ void load_emitter(Loader& loader, const Node& node, uint32_t shape);
 /// sky, sun, sunsky: adds one light for the sky, one for the sun.
 void load_daylight(Params& params, bool with_sky, bool with_sun);
 void load_sensor(Loader& loader, const Node& node);
+/// Whether Ajar has a sensor of this type, and what is said where it has none.
+bool is_camera(const Node& node);
+std::string unknown_sensor(const Node& node);
 /// When a sensor's shutter opens.
 double shutter_open(Loader& loader, const Node& node);
 void load_integrator(Loader& loader, const Node& node);

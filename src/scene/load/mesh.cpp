@@ -156,6 +156,8 @@ void add_polygon(Mesh& mesh, std::span<const uint32_t> c) {
   for (size_t i = 2; i < c.size(); ++i) mesh.triangles.push_back({c[0], c[i - 1], c[i]});
 }
 
+Vec2 finite_or_zero(const Vec2& uv) { return std::isfinite(uv.x) && std::isfinite(uv.y) ? uv : Vec2(0); }
+
 void complete(Mesh& mesh, const MeshOptions& options, const std::string& name) {
   if (mesh.positions.size() >= none || mesh.triangles.size() >= none)
     throw Error(fmt::format("{}: more than 2^32 - 2 vertices or triangles; split the mesh", name));
@@ -167,9 +169,7 @@ void complete(Mesh& mesh, const MeshOptions& options, const std::string& name) {
   if (options.face_normals || anew) mesh.normals.clear();
   const bool own_normals = !mesh.normals.empty();
   for (Vec2& uv : mesh.uvs) {
-    if (!std::isfinite(uv.x) || !std::isfinite(uv.y))
-      throw Error(fmt::format("{}: the texture coordinates of vertex {} are not finite; repair the mesh", name,
-                              &uv - mesh.uvs.data()));
+    uv = finite_or_zero(uv);
     if (options.flip_v) uv.y = 1 - uv.y;
   }
   for (const Rgb& c : mesh.colors)

@@ -48,8 +48,8 @@ struct MeshOptions {
 // Wüthrich 1998) unless face_normals is asked for. Normals are made unit; one that is missing, zero or not a number is
 // computed from the faces like those of a file without normals, and where these have no area it is (0, 0, 1). Polygons
 // become fans from their first corner; concave ones, of up to 256 corners, triangles that lie inside. Triangles without
-// area stay. Throws Error that names the file and line, vertex or face: file unreadable, malformed or truncated, index
-// out of range, position, uv or colour not finite.
+// area stay. Texture coordinates that are not finite become 0. Throws Error that names the file and line, vertex or
+// face: file unreadable, malformed or truncated, index out of range, position or colour not finite.
 
 /// Wavefront OBJ, the whole file as one mesh: objects, groups (but see above), lines and curves are passed over.
 /// Vertices with the same v, vt and vn index are shared. Faces of fewer than three corners have no area and are left
@@ -83,6 +83,8 @@ void transform(Mesh& mesh, const Mat4& to_world);
 
 /// A part of a colour that is encoded as sRGB (IEC 61966-2-1), as linear light.
 double from_srgb(double encoded);
+/// The texture coordinates, or 0 where one of them is not finite.
+Vec2 finite_or_zero(const Vec2& uv);
 /// A file to read from, and the bytes of one. Throw Error where it cannot be read.
 std::ifstream open_bytes(const std::string& path);
 std::string read_bytes(const std::string& path);

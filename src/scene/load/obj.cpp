@@ -36,9 +36,7 @@ void read_vertex(Cursor& in, ObjFile& out) {
 void read_texture_vertex(Cursor& in, ObjFile& out) {
   double x[2] = {0, 0};
   if (in.numbers(x, 2) < 1) in.fail("vt has no coordinates");
-  const Vec2 uv(x[0], x[1]);
-  if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) in.fail("a coordinate of vt is not finite");
-  out.vt.push_back(uv);
+  out.vt.push_back(finite_or_zero(Vec2(x[0], x[1])));
 }
 
 void read_normal(Cursor& in, ObjFile& out) {

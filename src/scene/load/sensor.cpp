@@ -112,15 +112,25 @@ void read_lens(Params& p, Camera& camera) {
   if (camera.kind != CameraKind::thinlens) return;
   camera.aperture = float(number(p, "aperture_radius", -1));
   if (!(camera.aperture >= 0)) fail(p.loader, p.node, "needs an aperture_radius, 0 or more");
+  if (camera.aperture > 0 && std::isinf(camera.far_clip) && !has(p, "focus_distance"))
+    fail(p.loader, p.node, "needs a focus_distance, as its far_clip is infinite");
   camera.focus = float(positive(p, "focus_distance", double(camera.far_clip)));
   if (camera.aperture > 0) return;
   camera.kind = CameraKind::perspective;
   note(p.loader, p.node, "an aperture_radius of 0 is a pinhole: rendered as perspective");
 }
 
+// Mitsuba reads "inf" as C does.
+double far_clip(Params& p) {
+  const Node* node = find(p, {"far_clip"});
+  const std::string* value = node != nullptr ? attribute(*node, "value") : nullptr;
+  const std::string word = value != nullptr ? lower(*value) : "";
+  return word == "inf" || word == "infinity" ? double(infinity) : number(p, "far_clip", 1e4);
+}
+
 void read_clip(Params& p, Camera& camera) {
   camera.near_clip = float(number(p, "near_clip", 1e-2));
-  camera.far_clip = float(number(p, "far_clip", 1e4));
+  camera.far_clip = float(far_clip(p));
   const bool flat = camera.kind == CameraKind::orthographic;
   if (!(flat || camera.near_clip >= 0) || !(camera.far_clip > camera.near_clip))
     fail(p.loader, p.node, "near_clip and far_clip should be 0 <= near < far");
@@ -201,6 +211,14 @@ double tan_half_x(Params& p, Camera& camera) {
   }
 }
 
+bool is_camera(const Node& node) {
+  return node.type == "perspective" || node.type == "thinlens" || node.type == "orthographic";
+}
+
+std::string unknown_sensor(const Node& node) {
+  return unknown(node) + "; supported: perspective, thinlens, orthographic";
+}
+
 double shutter_open(Loader& loader, const Node& node) {
   Params p(loader, node);
   return number(p, "shutter_open", 0);
@@ -210,13 +228,12 @@ void load_sensor(Loader& loader, const Node& node) {
   if (node.type == "batch") return load_batch(loader, node);
   Params p(loader, node);
   Camera& camera = loader.scene.camera;
-  if (node.type == "perspective" || node.type == "thinlens" || node.type == "orthographic") {
+  if (is_camera(node)) {
     camera.kind = node.type == "perspective" ? CameraKind::perspective
                   : node.type == "thinlens"  ? CameraKind::thinlens
                                              : CameraKind::orthographic;
   } else {
-    unsupported(loader, node, unknown(node) + "; supported: perspective, thinlens, orthographic",
-                "read as perspective");
+    unsupported(loader, node, unknown_sensor(node), "read as perspective");
   }
   camera.crop_width = camera.width;
   camera.crop_height = camera.height;

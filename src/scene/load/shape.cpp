@@ -294,6 +294,15 @@ void refuse_media(Params& p) {
     unsupported(p.loader, *inside, "subsurface scattering is not supported", "left out");
 }
 
+// Mitsuba has sensors that measure what arrives at a shape.
+void refuse_sensors(Params& p) {
+  for (const Node* sensor : nested(p, "sensor"))
+    unsupported(p.loader, *sensor,
+                is_camera(*sensor) ? "a sensor inside a shape is not supported; put it beside the shape"
+                                   : unknown_sensor(*sensor),
+                "left out");
+}
+
 // What stands in a shape by a misunderstanding.
 void note_strays(Params& p, const char* tag, const char* text) {
   for (size_t i = 0; i < p.node.children.size(); ++i) {
@@ -345,6 +354,7 @@ void load_part(Params& p, void (*read)(Params&, Shape&, const MeshPart&), const 
   if (!part.name.empty()) shape.name += ":" + part.name;
   read(p, shape, part);
   refuse_media(p);
+  refuse_sensors(p);
   const std::vector<const Node*> emitters = nested(p, "emitter");
   if (emitters.size() > 1) fail(loader, p.node, "has more than one emitter; keep one of them");
   if (!emitters.empty() && group != none)

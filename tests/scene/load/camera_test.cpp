@@ -145,6 +145,37 @@ TEST(Sensors, ClipAndPrincipalPoint) {
   EXPECT_SAYS(error("<float name='fov' value='0'/>"), "fov should be");
 }
 
+// As Mitsuba 2 reads it.
+TEST(Sensors, SeeAsFarAsThereIs) {
+  for (const std::string word : {"inf", "Infinity"}) {
+    const std::string far = "<float name='farClip' value='" + word + "'/>", wide =
+                                                                                "<float name='apertureRadius' "
+                                                                                "value='.1'/>";
+    const Camera c = read(far).camera;
+    EXPECT_EQ(c.far_clip, infinity);
+    CameraConnection seen;
+    EXPECT_TRUE(connect(c, Vec3(0, 0, 1e9f), {0.5f, 0.5f}, 0, seen));
+    EXPECT_EQ(generate(c, {1, 1}, {0.5f, 0.5f}).t_max, infinity);
+    EXPECT_EQ(read(far + wide + "<float name='focusDistance' value='2'/>", "thinlens").camera.focus, 2);
+    EXPECT_SAYS(error(far + wide, "thinlens"), "needs a focus_distance, as its far_clip is infinite");
+  }
+  EXPECT_SAYS(error("<float name='near_clip' value='inf'/>"), "is not a number");
+  EXPECT_SAYS(error("<float name='far_clip' value='-inf'/>"), "is not a number");
+}
+
+TEST(Sensors, InsideShapesAreToldAsOthers) {
+  const auto inside = [](const std::string& type) {
+    return "<shape type='rectangle'><sensor type='" + type + "'/></shape>";
+  };
+  EXPECT_EQ(error_of(inside("irradiancemeter")),
+            "test.xml:2: <sensor type=\"irradiancemeter\">: unknown sensor; supported: perspective, thinlens, "
+            "orthographic; with --lenient: left out");
+  EXPECT_SAYS(error_of(inside("perspective")), "a sensor inside a shape is not supported; put it beside the shape");
+  const Scene s = load_inside(inside("irradiancemeter"), lenient());
+  EXPECT_EQ(s.shapes.size(), 1u);
+  EXPECT_TRUE(says(s.notes, "unknown sensor; supported: perspective, thinlens, orthographic: left out"));
+}
+
 TEST(Films, SizeAndCrop) {
   Camera c = read("").camera;
   EXPECT_EQ(c.width, 768);
