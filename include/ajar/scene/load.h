@@ -2,6 +2,8 @@
 // Leaves: a finished Scene, or an Error that names file, line, element and cure.
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -11,15 +13,26 @@
 namespace ajar {
 
 /// What one load leaves for the next of the same scene at another time: images and meshes that files hold, which so are
-/// read once. Who changes the files between two loads is not seen.
+/// read once. A file that has changed since the first load that named it is an Error, so that all are of one scene.
 struct LoadCache {
+  /// Tells, without reading it, that a file is most likely still the one that was read.
+  struct Stamp {
+    uintmax_t size = 0;
+    std::filesystem::file_time_type written;
+    bool operator==(const Stamp&) const = default;
+  };
+  struct File {
+    Stamp stamp;
+    uint64_t sum = 0;  ///< checksum
+  };
   struct Placed {
     std::string source;  ///< file and options
     glm::dmat4 to_world{1};
     Mesh mesh;
   };
   std::map<std::string, Image> images;
-  std::map<std::string, uint64_t> files;  ///< their checksums
+  std::map<std::string, File> files;
+  std::map<std::string, uint64_t> texts;  ///< checksums of XML files, which are read each time
   std::map<size_t, Placed> meshes;        ///< by the shape that they are of; one that moved is read again
 };
 

@@ -102,7 +102,7 @@ struct Scene {
   Filter filter;
   Hints hints;
   uint64_t content = 0;            ///< checksum of all files that it was read from; 0: made by code
-  std::vector<std::string> files;  ///< that it was read from, but those that a LoadCache knew
+  std::vector<std::string> files;  ///< that it was read from
   std::vector<std::string> notes;  ///< what the loader wants the user to know, one line each
 
   // made by finish()

@@ -128,18 +128,14 @@ void load_child(Loader& loader, const Node& node, bool& has_integrator) {
   }
 }
 
-Scene load(const std::string& text, const std::string& folder, const std::string& name, const LoadOptions& options) {
-  const Document document = read_document(text, folder, name, options.defines);
-  Loader loader{document, options.lenient, 0, options.cache};
-  loader.scene.notes = document.notes;
-  loader.scene.content = document.content;
-  collect_ids(loader, document.root);
-  count_meshes(loader, document.root);
+// What stands in the document, once its elements are known by their ids.
+void load_elements(Loader& loader, const LoadOptions& options, const std::string& name) {
+  const Node& root = loader.document.root;
   const Node* sensor = sensor_of(loader);
   loader.time = options.time.value_or(sensor ? shutter_open(loader, *sensor) : 0);
   if (sensor) load_sensor(loader, *sensor);
   bool has_integrator = false;
-  for (const Node& child : document.root.children) load_child(loader, child, has_integrator);
+  for (const Node& child : root.children) load_child(loader, child, has_integrator);
   if (loader.scene.shapes.empty() && loader.scene.instances.empty())
     loader.scene.notes.push_back(name + ": the scene has no shapes");
   if (loader.scene.lights.empty()) light_up(loader, name);
@@ -149,6 +145,24 @@ Scene load(const std::string& text, const std::string& folder, const std::string
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", name, error.what()));
   }
+}
+
+Scene load(const std::string& text, const std::string& folder, const std::string& name, const LoadOptions& options,
+           bool from_file) {
+  const Document document = read_document(text, folder, name, options.defines);
+  if (options.cache) check_texts(document, from_file, *options.cache);
+  Loader loader{document, options.lenient, 0, options.cache};
+  loader.scene.notes = document.notes;
+  loader.scene.content = document.content;
+  collect_ids(loader, document.root);
+  count_meshes(loader, document.root);
+  try {
+    load_elements(loader, options, name);
+  } catch (const Error&) {
+    check_unchanged(loader);  // one that is being written is not faulty
+    throw;
+  }
+  check_unchanged(loader);
   loader.scene.files = document.files;
   for (const auto& [path, sum] : loader.sums) loader.scene.files.push_back(path);
   return std::move(loader.scene);
@@ -157,12 +171,12 @@ Scene load(const std::string& text, const std::string& folder, const std::string
 }  // namespace
 
 Scene load_scene(const std::string& path, const LoadOptions& options) {
-  return load(read_text(path), std::filesystem::path(path).parent_path().string(), path, options);
+  return load(read_text(path), std::filesystem::path(path).parent_path().string(), path, options, true);
 }
 
 Scene load_scene_text(const std::string& text, const std::string& folder, const std::string& name,
                       const LoadOptions& options) {
-  return load(text, folder, name, options);
+  return load(text, folder, name, options, false);
 }
 
 }  // namespace ajar

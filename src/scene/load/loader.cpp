@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <fstream>
 
 #include "ajar/core/bytes.h"
@@ -28,24 +29,60 @@ uint64_t checksum_of_file(const std::string& path) {
   return checksum(&size, sizeof size, sum);
 }
 
+LoadCache::Stamp stamp_of(const std::string& path) {
+  std::error_code unknown;
+  return {std::filesystem::file_size(path, unknown), std::filesystem::last_write_time(path, unknown)};
+}
+
+[[noreturn]] void fail_changed(const std::string& path) {
+  throw Error(path + ": has changed since the animation began; give the command again");
+}
+
+// The checksum of a file that no load has met before. Its stamp is older than what is read.
+uint64_t sum_of_new(Loader& loader, const Node& node, const std::string& path) {
+  const LoadCache::Stamp stamp = stamp_of(path);
+  std::array<char, 40> head{};
+  std::ifstream(path, std::ios::binary).read(head.data(), head.size());
+  if (const std::string problem = pointer_problem({head.data(), head.size()}); !problem.empty())
+    fail(loader, node, path + problem);
+  const uint64_t sum = checksum_of_file(path);
+  if (loader.cache) loader.cache->files.emplace(path, LoadCache::File{stamp, sum});
+  return sum;
+}
+
 }  // namespace
 
 void count_text(Document& document, const std::string& text) {
   const uint64_t size = text.size();
+  document.sums.push_back(checksum(text.data(), text.size(), size));
   document.content = checksum(text.data(), text.size(), checksum(&size, sizeof size, document.content));
 }
 
 void count_file(Loader& loader, const Node& node, const std::string& path) {
-  auto& sums = loader.cache ? loader.cache->files : loader.sums;
-  auto known = sums.find(path);
-  if (known == sums.end()) {
-    std::array<char, 40> head{};
-    std::ifstream(path, std::ios::binary).read(head.data(), head.size());
-    if (const std::string problem = pointer_problem({head.data(), head.size()}); !problem.empty())
-      fail(loader, node, path + problem);
-    known = sums.emplace(path, checksum_of_file(path)).first;
+  auto known = loader.sums.find(path);
+  if (known == loader.sums.end()) {
+    const auto* cache = loader.cache;
+    const bool kept = cache && cache->files.contains(path);
+    known = loader.sums.emplace(path, kept ? cache->files.at(path).sum : sum_of_new(loader, node, path)).first;
   }
   loader.scene.content = checksum(&known->second, sizeof known->second, loader.scene.content);
+}
+
+void check_texts(const Document& document, bool with_first, LoadCache& cache) {
+  for (size_t i = with_first ? 0 : 1; i < document.files.size(); ++i)
+    if (cache.texts.emplace(document.files[i], document.sums[i]).first->second != document.sums[i])
+      fail_changed(document.files[i]);
+}
+
+void check_unchanged(const Loader& loader) {
+  if (!loader.cache) return;
+  for (const auto& [path, sum] : loader.sums) {
+    LoadCache::File& file = loader.cache->files.at(path);
+    const LoadCache::Stamp now = stamp_of(path);
+    if (now == file.stamp) continue;
+    if (checksum_of_file(path) != file.sum) fail_changed(path);
+    file.stamp = now;  // written anew as it was
+  }
 }
 
 void fail(const Loader& loader, const Node& node, const std::string& text) {

@@ -43,7 +43,7 @@ struct Loader {
   std::map<std::string, int> mesh_uses;                         ///< shapes that name a file
   std::map<std::string, Mesh> meshes;                           ///< parsed files that more than one shape names
   std::shared_ptr<const ObjFile> obj;                           ///< the last that is more than one mesh
-  std::map<std::string, uint64_t> sums;                         ///< of files, where no cache keeps them
+  std::map<std::string, uint64_t> sums;                         ///< of files
   std::set<std::string> said;                                   ///< notes, each once
   std::vector<int> texture_sizes, material_sizes;               ///< elements of each, with all that is nested
   uint32_t grey = none, black = none;                           ///< materials of shapes without a bsdf
@@ -60,6 +60,11 @@ void unsupported(Loader& loader, const Node& node, const std::string& text, cons
 
 /// Adds a file that is read, which the element names, to Scene::content. Throws Error where it is not the file itself.
 void count_file(Loader& loader, const Node& node, const std::string& path);
+/// Throws Error where an XML file is not the one that an earlier load with this cache read. with_first: its first file
+/// is one, and not a text from memory.
+void check_texts(const Document& document, bool with_first, LoadCache& cache);
+/// The same of all files that were counted, and of a change while they were read. Nothing where no cache is.
+void check_unchanged(const Loader& loader);
 
 /// The element itself, or what a <ref> means.
 const Node& follow(const Loader& loader, const Node& node);

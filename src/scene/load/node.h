@@ -27,8 +27,9 @@ struct Document {
   std::vector<std::string> folders;            ///< where relative names are looked for, in this order
   std::map<std::string, std::string> aliases;  ///< <alias>: new name to id
   std::vector<std::string> notes;
-  uint64_t content = 0;  ///< checksum of the texts of all files
-  bool old = false;      ///< version 0.x, and no to_world in the scene's file: a few defaults differ
+  std::vector<uint64_t> sums;  ///< checksums of the texts of the files
+  uint64_t content = 0;        ///< checksum of all of them
+  bool old = false;            ///< version 0.x, and no to_world in the scene's file: a few defaults differ
 };
 
 /// Reads a scene. name stands in messages, folder resolves relative names. Throws Error.
@@ -40,7 +41,7 @@ std::string snake_case(const std::string& name);
 std::string lower(std::string text);
 /// Whole file as bytes. Throws Error with the reason.
 std::string read_text(const std::string& path);
-/// Adds the text of a file to Document::content.
+/// Adds the text of a file to Document::sums and Document::content.
 void count_text(Document& document, const std::string& text);
 /// A message without line breaks, whatever was quoted in it.
 std::string one_line(std::string text);

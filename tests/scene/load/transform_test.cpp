@@ -1,4 +1,5 @@
 // <transform> in all its steps.
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 
@@ -194,7 +195,7 @@ TEST(Animation, WrongOnesAreErrors) {
   EXPECT_SAYS(wrong("<transform time='1'/>", "<transform name='to_world'/>"), "stands beside a <transform>");
 }
 
-// What a first load read from files, a second one need not: the file may even be gone.
+// What a first load read from files a second one need not read; of one that changed it is told, whether read or not.
 TEST(LoadCache, ReadsWhatStaysOnce) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "load_cache";
   std::filesystem::create_directories(folder);
@@ -210,12 +211,27 @@ TEST(LoadCache, ReadsWhatStaysOnce) {
                            to + "'/></transform></animation></shape>",
                        options);
   };
+  const auto refused = [&](double time) {
+    try {
+      load_at(time, "1");
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
   const Scene first = load_at(0, "1");
-  std::ofstream(file) << "f 1 2 3\n";  // names vertices that are not there: whoever reads it throws
-  const Scene again = load_at(0, "1");
+  const auto written = std::filesystem::last_write_time(file);
+  std::ofstream(file) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n";  // whoever reads it throws
+  std::filesystem::last_write_time(file, written);
+  const Scene again = load_at(0, "1");  // by its size and time it is the same: it is not looked into
   EXPECT_EQ(again.meshes[0].positions, first.meshes[0].positions);
   EXPECT_EQ(again.meshes[0].triangles, first.meshes[0].triangles);
-  EXPECT_THROW(load_at(1, "1"), Error);
+  std::filesystem::last_write_time(file, written + std::chrono::seconds(1));
+  const std::string told = file + ": has changed since the animation began; give the command again";
+  EXPECT_EQ(refused(0), told);
+  EXPECT_EQ(refused(1), told);
+  std::ofstream(file) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";  // as it was, if later
+  EXPECT_EQ(refused(1), "");
   std::filesystem::remove_all(folder);
 }
 
