@@ -252,6 +252,30 @@ void teach(const Scene& scene, RenderState& state, const RenderOptions& options)
   state.stats.learn_cpu_seconds += process_cpu_seconds() - cpu;
 }
 
+// Throws Error where a state was not started for this scene and these options.
+void check_state(const Scene& scene, const RenderOptions& options, const RenderState& state) {
+  const Integrator& integrator = find_integrator(options.integrator);
+  const Camera& c = scene.camera;
+  const Film& f = state.film;
+  if (f.width != c.crop_width || f.height != c.crop_height || f.x0 != c.crop_x || f.y0 != c.crop_y)
+    throw Error(fmt::format(
+        "render: the film is of {}x{} pixels from {},{} on, the camera's are {}x{} from {},{} on; start_render makes a "
+        "state for each size",
+        f.width, f.height, f.x0, f.y0, c.crop_width, c.crop_height, c.crop_x, c.crop_y));
+  if (f.splats != integrator.splats)
+    throw Error(fmt::format(
+        "render: the film takes {} light subpaths, and {} {}; start_render makes a state for each integrator",
+        f.splats ? "what comes by" : "nothing of", options.integrator,
+        integrator.splats ? "brings it by them" : "brings none"));
+  if (learns(options) && state.learning.fields.starts.cuts.empty())
+    throw Error(fmt::format("render: {} learns, and the state has no fields; start_render makes one with these options",
+                            options.integrator));
+  if (!options.next_event && (integrator.splats || integrator.light_half))
+    throw Error(
+        fmt::format("render: {} needs next-event estimation; leave next_event true, or take path or guided-path",
+                    options.integrator));
+}
+
 }  // namespace
 
 std::vector<std::string> integrator_names() {
@@ -327,6 +351,7 @@ RenderState start_render(const Scene& scene, const RenderOptions& options) {
 
 void render(const Scene& scene, const Accel& accel, const RenderOptions& options, RenderState& state,
             const Monitor& monitor) {
+  check_state(scene, options, state);
   const Integrator& integrator = find_integrator(options.integrator);
   Film& film = state.film;
   RenderStats& stats = state.stats;

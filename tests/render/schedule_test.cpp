@@ -10,6 +10,37 @@ namespace {
 
 using namespace kit;
 
+// A state that was started otherwise cannot be gone on with.
+TEST(Schedule, StatesAreOfTheirRenders) {
+  const Scene scene = stage(16);
+  const Accel accel(scene);
+  const auto said = [&](const RenderOptions& started, const RenderOptions& rendered, const Scene& of) {
+    RenderState state = start_render(of, started);
+    return kit::error_of([&] { render(scene, accel, rendered, state, {}); });
+  };
+  const auto of = [&](const char* a, const char* b) { return said(options_of(a, 1), options_of(b, 1), scene); };
+  const auto has = [](const std::string& text, const char* words) { EXPECT_NE(text.find(words), text.npos) << text; };
+  Scene large = scene;
+  set_size(large.camera, 32, 16);
+  has(said(options_of("path", 1), options_of("path", 1), large), "of 32x16 pixels from 0,0 on, the camera's are 16x16");
+  Scene aside = scene;
+  aside.camera.crop_x = 1;
+  has(said(options_of("path", 1), options_of("path", 1), aside), "of 16x16 pixels from 1,0 on");
+  has(of("path", "bdpt"), "light subpaths");
+  has(of("bdpt", "path"), "light subpaths");
+  has(of("path", "guided-path"), "fields");
+  has(of("bdpt", "guided-bdpt"), "fields");
+  RenderOptions lights = options_of("path", 1), blind = options_of("path", 1);
+  lights.learn_lights = true, blind.next_event = false;
+  has(said(options_of("path", 1), lights, scene), "fields");
+  EXPECT_EQ(said(blind, blind, scene), "");
+  for (const char* integrator : {"bdpt", "light", "guided-bdpt", "vcm", "photon", "vpl", "plain-vpl"}) {
+    blind = options_of(integrator, 1), blind.next_event = false;
+    has(said(blind, blind, scene), "next-event estimation");
+  }
+  EXPECT_EQ(of("guided-path", "guided-path"), "");
+}
+
 // Quiet images need few light subpaths, whatever the unit of light; those that are young, or that teach, all of them.
 TEST(Schedule, LightSubpathsAreAsManyAsNoiseAsksFor) {
   for (const float factor : {1.0f, 1e-6f, 1e6f}) {
