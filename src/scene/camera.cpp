@@ -1,5 +1,8 @@
 #include "ajar/scene/camera.h"
 
+#include <fmt/format.h>
+
+#include "ajar/core/error.h"
 #include "ajar/core/warp.h"
 
 namespace ajar {
@@ -96,6 +99,8 @@ void set_orthographic(Camera& c, const Mat4& to_world) {
 }
 
 void set_size(Camera& camera, int width, int height) {
+  if (width < 1 || height < 1)
+    throw Error(fmt::format("set_size: an image of {}x{} pixels is none; give it one or more each way", width, height));
   // half extents of a view of square pixels; shape is what the camera's transform stretches them by
   const double x = camera.plane.x, shape = double(camera.plane.y) * camera.width / (x * camera.height);
   const double y = camera.plane.y / shape;

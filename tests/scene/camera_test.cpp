@@ -5,6 +5,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "ajar/core/error.h"
 #include "ajar/core/sampler.h"
 
 namespace ajar {
@@ -13,6 +14,14 @@ namespace {
 Mat4 pose(const Vec3& origin, const Vec3& toward) {
   const Vec3 z = glm::normalize(toward), x = glm::normalize(glm::cross(Vec3(0, 1, 0), z)), y = glm::cross(z, x);
   return {Vec4(x, 0), Vec4(y, 0), Vec4(z, 0), Vec4(origin, 1)};
+}
+
+TEST(Camera, ImagesHavePixels) {
+  Camera c;
+  for (const auto& [w, h] : {std::pair{0, 0}, std::pair{0, 8}, std::pair{8, 0}, std::pair{-8, 8}})
+    EXPECT_THROW(set_size(c, w, h), Error) << w << "x" << h;
+  set_size(c, 1, 1);
+  EXPECT_EQ(c.crop_width, 1);
 }
 
 struct Case {
