@@ -7,21 +7,23 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-#include <algorithm>
+#include <optional>
 
 namespace ajar {
 
-// TBB starts no more threads than there are processors unless told.
+// TBB starts no more threads than there are processors unless told. Of several who tell, the least holds for all of
+// the process: who wants no more says nothing.
 struct Threads::Arena {
+  explicit Arena(int count) : arena(count) {}
   tbb::task_arena arena;
-  tbb::global_control most;
+  std::optional<tbb::global_control> most;
 };
 
 Threads::Threads(int count) {
   const int processors = tbb::info::default_concurrency();
   if (count <= 0) count = processors;
-  arena_.reset(new Arena{tbb::task_arena(count),
-                         {tbb::global_control::max_allowed_parallelism, size_t(std::max(count, processors))}});
+  arena_.reset(new Arena(count));
+  if (count > processors) arena_->most.emplace(tbb::global_control::max_allowed_parallelism, size_t(count));
 }
 Threads::~Threads() = default;
 int Threads::count() const { return arena_->arena.max_concurrency(); }

@@ -33,25 +33,36 @@ TEST(Parallel, RangesMakeUpTheWhole) {
   parallel_ranges(0, 100, [](size_t, size_t) { ADD_FAILURE(); });
 }
 
-// Four threads even where there are fewer processors: each waits in its slot until all four are there.
-TEST(Parallel, ThreadsHaveSlotsOfTheirOwn) {
-  Threads threads(4);
-  ASSERT_EQ(threads.count(), 4);
-  std::vector<std::atomic<int>> inside(4);
+// Each of so many threads waits in its slot until all are there.
+void meet(Threads& threads, int count) {
+  ASSERT_EQ(threads.count(), count);
+  std::vector<std::atomic<int>> inside(static_cast<size_t>(count));
   std::atomic<int> here = 0;
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
   threads.run([&] {
-    parallel_for(4, [&](int) {
+    parallel_for(count, [&](int) {
       const uint32_t slot = thread_slot();
-      ASSERT_LT(slot, 4u);
+      ASSERT_LT(slot, uint32_t(count));
       EXPECT_EQ(inside[slot]++, 0);
       ++here;
-      while (here < 4 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+      while (here < count && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
       --inside[slot];
     });
   });
-  EXPECT_EQ(here, 4);
+  EXPECT_EQ(here, count);
   EXPECT_LT(std::chrono::steady_clock::now(), deadline);
+}
+
+// Four threads even where there are fewer processors.
+TEST(Parallel, ThreadsHaveSlotsOfTheirOwn) {
+  Threads threads(4);
+  meet(threads, 4);
+}
+
+TEST(Parallel, WhoWantsFewThreadsLeavesOthersTheirs) {
+  const int many = int(std::thread::hardware_concurrency()) + 2;
+  Threads threads(many), one(1), usual(0);
+  meet(threads, many);
 }
 
 TEST(Parallel, OneThreadIsTheCaller) {
