@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -122,12 +123,24 @@ std::string sequence_json(const std::vector<FrameFigures>& frames) {
   return text_of(j, 2) + "\n";
 }
 
+namespace {
+
+// The column of a parameter; one that is called like a figure has a longer name.
+std::string column_of(const std::string& parameter) {
+  static constexpr const char* figures[] = {"frame", "seconds", "cpu_seconds",    "spp",
+                                            "mean",  "relmse",  "relmse_trimmed", "flicker"};
+  const bool taken = std::find(std::begin(figures), std::end(figures), parameter) != std::end(figures);
+  return cell((taken ? "parameter_" : "") + parameter);
+}
+
+}  // namespace
+
 std::string sequence_csv(const std::vector<FrameFigures>& frames) {
   std::set<std::string> names;
   for (const FrameFigures& f : frames)
     for (const auto& [name, value] : f.parameters) names.insert(name);
   std::string out = "frame";
-  for (const std::string& name : names) (out += ",") += cell(name);
+  for (const std::string& name : names) (out += ",") += column_of(name);
   out += ",seconds,cpu_seconds,spp,mean,relmse,relmse_trimmed,flicker\n";
   for (const FrameFigures& f : frames) {
     out += fmt::format("{}", f.frame);

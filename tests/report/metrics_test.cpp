@@ -265,5 +265,13 @@ TEST(Flicker, FiguresOfAllFrames) {
   EXPECT_EQ(sequence_svg(frames, "a").find("nan"), std::string::npos);
 }
 
+TEST(Flicker, ColumnsOfParametersAreNotThoseOfFigures) {
+  FrameFigures f;
+  f.parameters = {{"frame", "1"}, {"spp", "4"}, {"sun", "2"}};
+  EXPECT_EQ(sequence_csv({f}),
+            "frame,parameter_frame,parameter_spp,sun,seconds,cpu_seconds,spp,mean,relmse,relmse_trimmed,flicker\n"
+            "0,1,4,2,0,0,0,0,,,\n");
+}
+
 }  // namespace
 }  // namespace ajar
