@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <memory>
@@ -59,11 +60,23 @@ void write_direct(const std::string& path, const std::function<void(Sink&)>& wri
   if (const int error = fill(file, false, write)) fail(path, error);
 }
 
-/// Where a file will be, and the one that is written before it is renamed.
+/// Where a file will be.
 struct Place {
-  std::string target, aside;
+  std::string target;
   bool direct = false;  ///< it is there, and no regular file
 };
+
+// The end of a chain of symbolic links whose file is not there yet.
+std::string end_of_links(const std::string& path) {
+  constexpr int most = 40;  // as Linux has it
+  std::filesystem::path end = path;
+  std::error_code ignored;
+  for (int links = 0; std::filesystem::is_symlink(end, ignored); ++links) {
+    if (links == most) fail(path, ELOOP);
+    end = end.parent_path() / std::filesystem::read_symlink(end, ignored);
+  }
+  return end.string();
+}
 
 Place place_of(const std::string& path) {
   if (path.empty()) throw Error("the name of the file to write is empty; name a file");
@@ -71,24 +84,33 @@ Place place_of(const std::string& path) {
   const bool exists = ::stat(path.c_str(), &old) == 0;
   if (exists && S_ISDIR(old.st_mode)) fail(path, EISDIR);
   std::error_code ignored;
-  std::string target = exists ? std::filesystem::canonical(path, ignored).string() : path;
+  std::string target = exists ? std::filesystem::canonical(path, ignored).string() : end_of_links(path);
   if (target.empty()) target = path;
-  return {target, fmt::format("{}.tmp{}", target, ::getpid()), exists && !S_ISREG(old.st_mode)};
+  return {target, exists && !S_ISREG(old.st_mode)};
 }
 
-/// Opens the temporary file.
-int open_aside(const std::string& path, const std::string& aside) {
-  const int file = ::open(aside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (file < 0) fail(path, errno);
-  return file;
+/// Opens a temporary file that was not there, beside the target; aside becomes its name.
+int open_aside(const std::string& path, const std::string& target, std::string& aside) {
+  for (int tries = 0;; ++tries) {
+    aside = target + temporary_suffix();
+    const int file = ::open(aside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file >= 0) return file;
+    if (errno != EEXIST || tries == 100) fail(path, errno);
+  }
 }
 
-void try_out(const std::string& path, const std::string& aside) {
-  ::close(open_aside(path, aside));
+void try_out(const std::string& path, const std::string& target) {
+  std::string aside;
+  ::close(open_aside(path, target, aside));
   ::unlink(aside.c_str());
 }
 
 }  // namespace
+
+std::string temporary_suffix() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return fmt::format(".tmp{}-{:x}", ::getpid(), std::chrono::nanoseconds(now).count());
+}
 
 void Sink::bytes(const void* data, size_t size) {
   if (error == 0 && std::fwrite(data, 1, size, file) != size) error = errno;
@@ -97,17 +119,18 @@ void Sink::bytes(const void* data, size_t size) {
 void write_aside(const std::string& path, const std::function<void(Sink&)>& write) {
   const Place place = place_of(path);
   if (place.direct) return write_direct(path, write);
-  const int file = open_aside(path, place.aside);
+  std::string aside;
+  const int file = open_aside(path, place.target, aside);
   int error = 0;
   try {
     error = fill(file, true, write);
   } catch (...) {
-    ::unlink(place.aside.c_str());
+    ::unlink(aside.c_str());
     throw;
   }
-  if (error == 0 && ::rename(place.aside.c_str(), place.target.c_str()) != 0) error = errno;
+  if (error == 0 && ::rename(aside.c_str(), place.target.c_str()) != 0) error = errno;
   if (error == 0) return;
-  ::unlink(place.aside.c_str());
+  ::unlink(aside.c_str());
   fail(path, error);
 }
 
@@ -134,7 +157,7 @@ void check_file(const std::string& path) {
     if (::access(path.c_str(), W_OK) != 0) fail(path, errno);
     return;
   }
-  try_out(path, place.aside);
+  try_out(path, place.target);
 }
 
 void check_folder(const std::string& path) {
@@ -143,7 +166,7 @@ void check_folder(const std::string& path) {
   fs::path there = fs::absolute(path, error);
   while (!fs::exists(there, error) && there.has_relative_path()) there = there.parent_path();
   if (!fs::is_directory(there, error)) fail(path, ENOTDIR);
-  try_out(path, (there / fmt::format("ajar.tmp{}", ::getpid())).string());
+  try_out(path, (there / "ajar").string());
 }
 
 }  // namespace ajar

@@ -65,6 +65,32 @@ TEST_F(Files, FoldersAreTriedWhereTheyWillBe) {
   EXPECT_NE(said("/proc/ajar/b"), "");
 }
 
+// Two of one name at once, in one process or with the same number on two machines.
+TEST_F(Files, TemporaryOnesAreNobodyElses) {
+  write_aside(file("a"), [&](Sink& outer) {
+    write_text(file("a"), "inner");
+    EXPECT_EQ(kit::bytes_of(file("a")), "inner");
+    outer.bytes("outer", 5);
+  });
+  EXPECT_EQ(kit::bytes_of(file("a")), "outer");
+  EXPECT_EQ(count(), 1u);
+  EXPECT_NE(temporary_suffix(), temporary_suffix());
+}
+
+TEST_F(Files, LinksAreFollowedWhetherTheirFilesAreThereOrNot) {
+  fs::create_directories(folder / "far");
+  fs::create_symlink("far/b", file("a"));
+  fs::create_symlink("a", file("c"));
+  EXPECT_EQ(checked(file("c")), "");
+  write_text(file("c"), "text");
+  EXPECT_TRUE(fs::is_symlink(file("a")) && fs::is_symlink(file("c")));
+  EXPECT_EQ(kit::bytes_of(file("far/b")), "text");
+  fs::create_symlink("none/b", file("d"));
+  EXPECT_NE(checked(file("d")).find("make the folder"), std::string::npos);
+  fs::create_symlink("e", file("e"));
+  EXPECT_NE(checked(file("e")).find("cannot be written"), std::string::npos);
+}
+
 TEST_F(Files, WhoCannotSayWhatToWriteWritesNothing) {
   write_text(file("a"), "old");
   EXPECT_THROW(write_aside(file("a"), [](Sink&) { throw std::runtime_error("no"); }), std::runtime_error);

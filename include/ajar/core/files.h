@@ -17,9 +17,14 @@ struct Sink {
   void bytes(const void* data, size_t size);
 };
 
-/// Calls write for a temporary file in the same folder, flushes it to the disk and renames it. A symbolic link to what
-/// exists stays; a name that exists and is no regular file (/dev/null, a pipe) is written to as it is. Throws Error
-/// that names file, cause and cure; then no temporary file is left, and a file of that name is as it was.
+/// What the name of a temporary file ends in: the process and the time to the nanosecond, since numbers of processes
+/// are not unique on a disk that several machines or containers share.
+std::string temporary_suffix();
+
+/// Calls write for a temporary file in the same folder, flushes it to the disk and renames it. A symbolic link stays,
+/// and what it leads to is written; a name that exists and is no regular file (/dev/null, a pipe) is written to as it
+/// is. Throws Error that names file, cause and cure; then no temporary file is left, and a file of that name is as it
+/// was.
 void write_aside(const std::string& path, const std::function<void(Sink&)>& write);
 void write_aside(const std::string& path, const void* bytes, size_t size);
 void write_text(const std::string& path, const std::string& text);
