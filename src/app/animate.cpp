@@ -46,6 +46,7 @@ struct Work {
   std::string options_key;  // of the whole animation, without budgets
   std::string key;          // the same with the files of its first frame
   bool carries = false;     // fields
+  bool lost = false;        // fields for a later command: they could not be written
   std::optional<Carried> carried;
   std::vector<int> to_do;
   int done = 0;  // of these
@@ -192,6 +193,16 @@ std::string carried_name(const Work& w) {
   return fmt::format("{}/carried_{}-{}.fields", w.folder, r.first, r.last);
 }
 
+// For a command that goes on from here; without them it learns them again.
+void save_for_later(Work& w) {
+  try {
+    save_carried(carried_name(w), w.key, *w.carried);
+  } catch (const Error& error) {
+    if (!w.lost) clear_line(), say(stderr, "ajar: warning: {}; the animation goes on\n", error.what());
+    w.lost = true;
+  }
+}
+
 // The fields of a frame from those of the frame before.
 Lessons teach_frame(Work& w, int frame, const Stage& stage) {
   const double wall = wall_seconds(), cpu = process_cpu_seconds();
@@ -238,7 +249,7 @@ void render_frames(Work& w) {
     const Lessons lessons = taught ? teach_frame(w, frame, stage) : Lessons{};
     if (wanted) {
       render_frame(w, frame, stage, lessons);
-      if (w.carries) save_carried(carried_name(w), w.key, *w.carried);
+      if (w.carries) save_for_later(w);
       tell_frame(w, frame);
     }
     before = std::move(stage);
@@ -310,6 +321,7 @@ Work prepare(const AnimateArguments& a) {
   const fs::path folder = fs::path(frame_name(w.pattern, 0)).parent_path();
   w.folder = folder.empty() ? "." : folder.string();
   make_folder(w.folder);
+  if (!a.video.empty()) check_file(a.video);  // it may lie there, too
   for (int f = r.first; f <= r.last; ++f)
     if (!is_done(w, f)) w.to_do.push_back(f);
   if (!w.to_do.empty()) check_outputs(w);

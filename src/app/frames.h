@@ -63,7 +63,7 @@ std::optional<Carried> find_carried(const std::string& folder, const std::string
 std::vector<FrameFigures> measure(const FramePattern& pattern, const Timeline& timeline,
                                   const std::optional<FramePattern>& reference, const std::string& key = {});
 
-/// Throws Error where the name is none for a film, or cannot be written, or ffmpeg is not installed.
+/// Throws Error where the name is none for a film, or ffmpeg is not installed.
 void check_video(const std::string& out);
 /// Makes a film of the PNG files of a range. Throws Error, and Interrupted.
 void make_video(const FramePattern& png, const FrameRange& frames, double fps, const std::string& out);

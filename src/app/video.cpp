@@ -71,6 +71,15 @@ int run(const std::string& program, const std::vector<std::string>& arguments) {
   }
 }
 
+// The working folder before a name with a place for numbers. There % is ffmpeg's own sign.
+std::string absolute_pattern(const std::string& names) {
+  std::error_code unknown;
+  const std::string all = fs::absolute(names, unknown).string();
+  std::string out;
+  for (const char c : all.substr(0, all.size() - names.size())) out.append(c == '%' ? 2 : 1, c);
+  return out + names;
+}
+
 }  // namespace
 
 void check_video(const std::string& out) {
@@ -79,7 +88,6 @@ void check_video(const std::string& out) {
   if (std::find(std::begin(known), std::end(known), extension_of(out)) == std::end(known))
     throw Error(fmt::format("--video {}: is no name for a film; write NAME.mp4, or one with {}", out,
                             fmt::join(std::begin(known) + 1, std::end(known), ", ")));
-  check_file(out);
   if (find_program("ffmpeg").empty())
     throw Error("--video: ffmpeg is not installed (Debian: apt-get install ffmpeg); install it, or leave --video out");
 }
@@ -89,13 +97,13 @@ void make_video(const FramePattern& png, const FrameRange& frames, double fps, c
   // names are taken for no option and no protocol (a:b).
   std::error_code error;
   const fs::path aside =
-      fs::absolute(out, error).replace_extension(fmt::format(".tmp{}{}", getpid(), fs::path(out).extension().string()));
+      fs::absolute(out, error).replace_extension(temporary_suffix() + fs::path(out).extension().string());
   const std::string names = fmt::format("{}%0{}d{}", png.before, std::max(png.digits, 1), png.after);
-  const int status = run(find_program("ffmpeg"),
-                         {"-y", "-nostdin", "-loglevel", "error", "-framerate", fmt::format("{:g}", fps),
-                          "-start_number", fmt::format("{}", frames.first), "-i", fs::absolute(names, error).string(),
-                          "-frames:v", fmt::format("{}", frames.last - frames.first + 1), "-vf",
-                          "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p", aside.string()});
+  const int status =
+      run(find_program("ffmpeg"), {"-y", "-nostdin", "-loglevel", "error", "-framerate", fmt::format("{:g}", fps),
+                                   "-start_number", fmt::format("{}", frames.first), "-i", absolute_pattern(names),
+                                   "-frames:v", fmt::format("{}", frames.last - frames.first + 1), "-vf",
+                                   "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p", aside.string()});
   if (status == 0) fs::rename(aside, out, error);
   if (status == 0 && !error) return;
   fs::remove(aside, error);

@@ -5,6 +5,7 @@
 
 #include "animate_stage.h"
 #include "app/frames.h"
+#include "app/timeline.h"
 
 namespace ajar {
 namespace {
@@ -190,6 +191,69 @@ TEST_F(AnimateFiles, ParametersOfKeyframesAreNotBlamedOnTheUser) {
   const std::string what = said({"--spp", "1", "--keyframes", in("keys.json"), "-o", in("f_%d.exr")});
   EXPECT_SAYS(what, in("keys.json") + ": parameter \"wind\": the scene has no parameter of this name");
   EXPECT_EQ(what.find("-D"), what.npos) << what;
+}
+
+// A film is of one scene: whatever file of it changes between two frames ends the work.
+TEST_F(AnimateFiles, FilesThatChangeEndTheAnimation) {
+  const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n";
+  write("moving.obj", triangle), write("still.obj", triangle), write("light.spd", "400 1\n700 1\n");
+  write("lamp0.xml", R"(<scene version="3.0.0"><include filename="lamp.xml"/></scene>)");
+  write("lamp1.xml", R"(<scene version="3.0.0"><include filename="lamp.xml"/><!-- another --></scene>)");
+  write("lamp.xml", R"(<scene version="3.0.0"><emitter type="constant">
+    <spectrum name="radiance" filename="light.spd"/></emitter></scene>)");
+  write_png(in("image.png"), Picture{1, 1, {"R", "G", "B"}, {0.5f, 0.5f, 0.5f}});
+  put(R"(<default name="n" value="0"/><include filename="lamp$n.xml"/>
+    <shape type="obj"><string name="filename" value="moving.obj"/>
+      <transform name="to_world"><translate x="$n"/></transform></shape>
+    <shape type="obj"><string name="filename" value="still.obj"/><bsdf type="diffuse">
+      <texture name="reflectance" type="bitmap"><string name="filename" value="image.png"/></texture></bsdf></shape>)");
+  Shooting shooting{in("room.xml"), "", false, make_timeline("2", {"n=0..1"}, "", ""), {}};
+  const auto loaded = [&](int frame) { return error_of([&] { load_frame(shooting, frame); }); };
+  EXPECT_EQ(loaded(0), "");
+  EXPECT_EQ(loaded(1), "");  // lamp1.xml is another file, not a change
+  for (const char* name : {"room.xml", "lamp.xml", "moving.obj", "still.obj", "light.spd", "image.png"}) {
+    const std::string before = kit::bytes_of(in(name));
+    write(name, before + "\n");
+    EXPECT_EQ(loaded(1), in(name) + ": has changed since the animation began; give the command again (frame 1: n=1)");
+    write(name, before);
+    EXPECT_EQ(loaded(1), "") << name;
+  }
+}
+
+// Fields for a later command are a help: a full disk takes them, not the frames.
+TEST_F(AnimateFiles, AFullDiskForFieldsEndsNothing) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
+  fs::create_directories(in("shot"));
+  fs::create_symlink("/dev/full", in("shot/carried_0-1.fields"));
+  testing::internal::CaptureStderr();
+  const std::string error =
+      said({"--frames", "2", "--spp", "1", "--teach", "1", "--integrator", "guided-path", "-o", in("shot/f_%d.exr")});
+  const std::string told = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(error, "");
+  EXPECT_TRUE(fs::exists(in("shot/f_1.exr")));
+  const size_t first = told.find("warning: " + in("shot/carried_0-1.fields") + ": cannot be written (No space left");
+  ASSERT_NE(first, told.npos) << told;
+  EXPECT_SAYS(told, "the animation goes on");
+  EXPECT_EQ(told.find("warning", first + 1), told.npos) << "once is enough: " << told;
+}
+
+// A film beside its frames, in a folder to be made; names of folders that ffmpeg would take for its own signs.
+TEST_F(AnimateFiles, FilmsMayLieBesideTheirFrames) {
+  const std::string path = std::getenv("PATH");
+  ::setenv("PATH", folder.c_str(), 1);
+  const fs::path there = fs::current_path();
+  EXPECT_SAYS(said({"--frames", "2", "--spp", "1", "-o", in("f_%d.exr"), "--video", in("none/film.mp4")}),
+              "ffmpeg is not installed");
+  write("ffmpeg", "#!/bin/sh\nfor last; do :; done\necho \"$@\" > \"$last\"\n");
+  fs::permissions(in("ffmpeg"), fs::perms::owner_all);
+  EXPECT_EQ(said({"--frames", "2", "--spp", "1", "-o", in("shot/f_%d.exr"), "--video", in("shot/film.mp4")}), "");
+  EXPECT_TRUE(fs::exists(in("shot/film.mp4")));
+  fs::create_directories(in("100%d of it"));
+  fs::current_path(in("100%d of it"));
+  EXPECT_EQ(said({"--frames", "2", "--spp", "1", "-o", "f_%d.exr", "--video", "film.mp4"}), "");
+  fs::current_path(there);
+  EXPECT_SAYS(kit::bytes_of(in("100%d of it/film.mp4")), "-i " + in("100%%d of it/f_%01d.png") + " ");
+  ::setenv("PATH", path.c_str(), 1);
 }
 
 TEST_F(AnimateFiles, FilmsHaveKnownNames) {
