@@ -12,7 +12,8 @@ using namespace kit;
 
 // A state that was started otherwise cannot be gone on with.
 TEST(Schedule, StatesAreOfTheirRenders) {
-  const Scene scene = stage(16);
+  Scene scene = stage(16);
+  finish(scene);
   const Accel accel(scene);
   const auto said = [&](const RenderOptions& started, const RenderOptions& rendered, const Scene& of) {
     RenderState state = start_render(of, started);
