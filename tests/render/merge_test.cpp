@@ -171,6 +171,23 @@ TEST(Merging, FindsWhatNextEventEstimationFinds) {
   EXPECT_NEAR(beyond, right_beyond, 0.06 * right_beyond);
 }
 
+// One light subpath in twenty stops at the floor, and one dart in twenty.
+TEST(Merging, SurfacesThatAreHardlyThereLoseNoLight) {
+  Scene scene;
+  scene.filter = make_filter(FilterKind::box);
+  set_camera(scene, {0, 3, 3}, {0, 0, 0}, 30, 32, 32);
+  Material floor;
+  floor.kind = MaterialKind::mask;
+  floor.weight = Slot(0.05f), floor.nested[0] = add_diffuse(scene, Rgb(0.8f));
+  add_quad(scene, {-4, 0, -4}, {0, 0, 8}, {8, 0, 0}, add_material(scene, floor));
+  add_area_light(scene, add_quad(scene, {-0.5f, 2, -0.5f}, {1, 0, 0}, {0, 0, 1}, add_diffuse(scene, Rgb(0))), Rgb(5));
+  finish(scene);
+  const double right = mean(render_once(scene, with_radius("path", 0, 1024)));
+  EXPECT_GT(right, 0.005);
+  for (const char* integrator : {"vcm", "photon"})
+    EXPECT_NEAR(mean(render_once(scene, with_radius(integrator, 5, 1024))), right, 0.1 * right) << integrator;
+}
+
 // Where a pixel is alone, in most passes no light subpath is kept for joins; those that are kept stand for all.
 TEST(Merging, OnePixel) {
   const Scene scene = cornell(1);
