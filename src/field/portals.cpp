@@ -13,6 +13,9 @@ namespace {
 constexpr float one_plane = 1 / 8.0f;
 constexpr size_t least_cuts = 4;
 
+// Where lines through a wall are closest together, heavier ones count as this (law 7).
+constexpr double heaviest_line = 1024;
+
 // What the axes beside a given one are.
 int first_beside(int axis) { return (axis + 1) % 3; }
 int second_beside(int axis) { return (axis + 2) % 3; }
@@ -70,17 +73,21 @@ bool add_portals(Fields& fields) {
 
 void record_line(const Portal& portal, const Vec3& p, const Vec3& w, double weight, int64_t* sums) {
   const int a = portal.axis, beside[2] = {first_beside(a), second_beside(a)};
-  const double along = w[a], carried = weight * along * along;
-  const auto put = [&](size_t i, double x) {
+  const double along = w[a], carried = std::min(weight, heaviest_line) * along * along;
+  // Not cut, which would depend on the order: after some 10^8 of the heaviest it starts again at the other end.
+  const auto put_signed = [&](size_t i, double x) {
     const int64_t n = x < 0 ? -to_fixed(-x, value_step) : to_fixed(x, value_step);
     std::atomic_ref<int64_t>(sums[i]).fetch_add(n, std::memory_order_relaxed);
   };
-  put(0, carried);
+  add(sums[0], to_fixed(carried, value_step));
   for (size_t i = 0; i < 2; ++i) {
     const int b = beside[i];
     const double slope = w[b] / along, at = (p[b] - portal.center[b] + slope * (portal.wall - p[a])) / portal.radius;
-    const double powers[5] = {at, slope, at * at, at * slope, slope * slope};
-    for (size_t k = 0; k < 5; ++k) put(1 + 5 * i + k, carried * powers[k]);
+    const size_t first = 1 + 5 * i;
+    put_signed(first, carried * at), put_signed(first + 1, carried * slope),
+        put_signed(first + 3, carried * at * slope);
+    add(sums[first + 2], to_fixed(carried * at * at, value_step));
+    add(sums[first + 4], to_fixed(carried * slope * slope, value_step));
   }
 }
 

@@ -27,12 +27,13 @@ void resize(Tallies& t, const Field& f) {
   t.through.assign(f.cells.size() * sums_through(f), 0);
 }
 
-// What is brightest decides how far away things are. (G8)
+// What is brightest decides how far away things are; nothing is nearer than a cell is wide. (G8)
 void add_distance(const Fields& fields, const Field& field, Tallies& tallies, uint32_t cell, const Record& r) {
   const float total = field.cells[cell].total, above = total > 0 ? std::min(pi * r.value / total, 64.0f) : 1;
   const double held = std::min(double(r.weight), largest_weight) * r.value * above / field.unit;
   add(tallies.held[cell], to_fixed(held, value_step));
-  add(tallies.nearness[cell], to_fixed(held * fields.table.width / r.distance, value_step));
+  const float nearest = std::ldexp(1.0f, level_of(fields.cells[cell].key));
+  add(tallies.nearness[cell], to_fixed(held * std::min(fields.table.width / r.distance, nearest), value_step));
 }
 
 // What would have come through a portal, had nothing been in the way before it, counts as nothing.

@@ -277,5 +277,29 @@ TEST_F(FieldsUsed, PicturesNeedTheRightSceneAndAFolder) {
   EXPECT_FALSE(std::filesystem::exists(folder / "cells.png"));
 }
 
+// A ground plane a thousand times as wide as the room: what shines is so many units that sums are full.
+TEST_F(FieldsUsed, OfARoomInAHugeSceneComeBack) {
+  std::ifstream in(box);
+  std::string xml{std::istreambuf_iterator<char>(in), {}};
+  const std::string ground =
+      "<shape type='rectangle'><transform name='to_world'><scale value='1000'/><rotate x='1' angle='-90'/>"
+      "<translate y='-3'/></transform></shape>";
+  xml.insert(xml.rfind("</scene>"), ground);
+  xml.insert(xml.find("<include"), "<path value='" AJAR_SOURCE_DIR "/scenes/box'/>");
+  const std::string scene = (folder / "huge.xml").string();
+  std::ofstream(scene) << xml;
+  std::vector<std::string> arguments = {"render", scene,           "-q",           "--size",       "64x64",
+                                        "--plan", "all",           "--integrator", "guided-bdpt",  "-o",
+                                        out,      "--save-fields", fields,         "--checkpoint", state};
+  const auto with_spp = [&](const char* spp) {
+    std::vector<std::string> all = arguments;
+    all.insert(all.end(), {"--spp", spp});
+    return error([&] { run_command_line(all); });
+  };
+  EXPECT_EQ(with_spp("5"), "");
+  told({});
+  EXPECT_EQ(with_spp("6"), "") << "from the checkpoint";
+}
+
 }  // namespace
 }  // namespace ajar

@@ -51,6 +51,30 @@ TEST(Learn, ZerosPullDownAndSilenceDoesNot) {
   EXPECT_FLOAT_EQ(weight_of(b.q, 2), 2) << "nothing new was seen there, nothing is forgotten";
 }
 
+// More than 64 bits hold, from the first record to the last and the other way round: as much as they hold.
+TEST(Learn, SumsEndWhereTheyAreFull) {
+  const Fields blank = one_cell();
+  const auto tallies = [&](bool backwards) {
+    Lesson lesson(blank);
+    constexpr int n = 10000;
+    for (int k = 0; k < n; ++k) {
+      const int i = backwards ? n - 1 - k : k;
+      const float value = i % 3 == 0 ? 1.5f + float(i) : 1e20f;
+      lesson.add(towards(i % 2), value, 1 + float(i % 64));
+      record_direct(lesson.fields.q, lesson.training.q, 0, value);
+    }
+    return lesson;
+  };
+  const Lesson forth = tallies(false), back = tallies(true);
+  EXPECT_TRUE(same_training(forth.training.q, back.training.q));
+  EXPECT_EQ(forth.training.q.held, back.training.q.held);
+  EXPECT_EQ(forth.training.q.direct[0], int64_t(1) << 62);
+  const Fields f = forth.learned(whole_strata());
+  EXPECT_GT(mean_of(f.q, 0), 1e3f);
+  EXPECT_LT(mean_of(f.q, 0), infinity);
+  EXPECT_GT(f.q.cells[0].direct, 1e3f);
+}
+
 // What guides hardly better than the surface does by itself is left out.
 TEST(Learn, EvenFieldsDoNotGuide) {
   const auto mix = [](float brightest, float least_contrast) {

@@ -111,6 +111,16 @@ TEST_F(Nearness, IsLearnedFromWhereTheLightComesFrom) {
   EXPECT_LE(fields.q.cells[0].near, 1 / edge) << "the cell must lie within the sphere";
 }
 
+// A record on the cell's own edge says no more than that its light is as near as a cell can tell.
+TEST_F(Nearness, OneRecordThatIsAllButHereDoesNotDecide) {
+  Training training = start_training(fields);
+  const float distance = 4 * edge;
+  for (int i = 0; i < 99; ++i) record(fields, fields.q, training.q, 0, {cell().center, upwards, distance, 5.0f, 1.0f});
+  record(fields, fields.q, training.q, 0, {cell().center, upwards, 1e-6f * edge, 5.0f, 1.0f});
+  fields = learn(fields, training, {}, 1, {});
+  EXPECT_NEAR(fields.q.cells[0].near, (99 / distance + 1 / edge) / 100, 1e-3f / edge);
+}
+
 // What it is good for: more of what is sampled goes to a small light that is seen from all over a cell.
 TEST_F(Nearness, MakesSmallLightsSharp) {
   const Vec3 light = cell().center + 2.0f * upwards;
