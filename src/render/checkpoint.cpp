@@ -53,24 +53,24 @@ void read(Reader& r, Learning& l) {
 }
 
 template <class Io, class State>
+void adaptive_fields(Io& io, State& adaptive) {
+  io.array(adaptive.spread), io.value(adaptive.passes), io.array(adaptive.counts), io.value(adaptive.first);
+}
+
+template <class Io, class State>
 void plain_fields(Io& io, State& plain) {
   io.value(plain.taken), io.value(plain.settled), io.value(plain.passes), io.value(plain.ratio);
   io.value(plain.pace), io.value(plain.guided_error), io.value(plain.plain_error);
   io.value(plain.missed), io.value(plain.rays), io.value(plain.seen.passes), io.array(plain.seen.sum),
       io.array(plain.seen.half);
   io.value(plain.returned), io.value(plain.merged);
-  film_fields(io, plain.guided), io.value(plain.ledger);
+  film_fields(io, plain.guided), io.value(plain.ledger), adaptive_fields(io, plain.adaptive);
   film_fields(io, plain.with_merging), io.value(plain.merging_ledger);
 }
 
 template <class Io, class State>
 void balance_fields(Io& io, State& balance) {
   io.value(balance.goes_on), io.value(balance.passes), io.value(balance.work), io.array(balance.found);
-}
-
-template <class Io, class State>
-void adaptive_fields(Io& io, State& adaptive) {
-  io.array(adaptive.spread), io.value(adaptive.passes), io.array(adaptive.counts), io.value(adaptive.first);
 }
 
 bool is_sound(const Adaptive& a, size_t pixels) {
@@ -156,6 +156,7 @@ void load_checkpoint(const std::string& path, const std::string& key, RenderStat
   state.plain.guided = state.plain.with_merging = state.film;  // for their place and filter, which are not in the file
   plain_fields(r, state.plain);
   r.require(state.plain.seen.half.size() == state.plain.seen.sum.size());
+  r.require(is_sound(state.plain.adaptive, pixels));
   for (const Film* film : {&state.plain.guided, &state.plain.with_merging})
     r.require(film->passes == 0 || is_sound(*film, pixels));
   read(r, state.learning);

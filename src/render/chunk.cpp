@@ -20,7 +20,7 @@ uint64_t index_of(const Film& film, int x, int y) { return uint64_t(y) * uint64_
 
 // The numbers of a pixel's k-th sample in a pass: those that come next. Even passes and odd ones have sequences of
 // their own.
-Sampler numbers_of(const Job& job, uint64_t pixel, uint32_t pass, uint32_t k) {
+Sampler pixel_numbers(const Job& job, uint64_t pixel, uint32_t pass, uint32_t k) {
   uint32_t point = pass;
   if (job.adaptive) point = job.adaptive->first + 2 * (job.adaptive->spread[pixel].counts[pass % 2] + k) + pass % 2;
   return make_sampler(job.sampler, job.seed, Side::camera, pixel, point);
@@ -35,7 +35,7 @@ Sample make_sample(const Job& job, const Film& film, int x, int y, uint32_t k = 
   s.pass = film.dropped + film.passes;
   s.number = k, s.count = count_of(job.adaptive, pixel);
   s.teaches = k == 0 && job.learning && is_recorded(*job.learning, pixel, s.pass, recorded_one_in(*job.learning, film));
-  s.sampler = numbers_of(job, pixel, s.pass, k);
+  s.sampler = pixel_numbers(job, pixel, s.pass, k);
   const Vec2 centre(float(film.x0 + x) + 0.5f, float(film.y0 + y) + 0.5f);
   s.raster = centre + ajar::sample(film.filter, s.sampler.next2(), s.filter);
   if (job.scene->camera.kind == CameraKind::thinlens) s.lens = s.sampler.next2();

@@ -199,8 +199,9 @@ void doubt_plain(bool merges, RenderState& state) {
     film = std::move(plain.guided);
     plain.returned = since.passes;
     state.stats.ledger = plain.ledger;
+    state.adaptive = std::move(plain.adaptive);
   }
-  if (!plain.taken || film.passes >= doubted * plain.passes) plain.guided = {}, plain.ledger = {};
+  if (!plain.taken || film.passes >= doubted * plain.passes) plain.guided = {}, plain.ledger = {}, plain.adaptive = {};
 }
 
 }  // namespace
@@ -286,7 +287,8 @@ void try_plain(const Job& job, const RenderOptions& options, std::vector<Scratch
   decide(look.plain + plain.missed / passes, look.deviation, guided, passes, film.passes, plain);
   if (plain.taken && merges) return leave_out_merging(!is_over(options, state.stats, late), state);
   if (plain.settled) plain.seen = {};
-  if (plain.taken && film.splats) plain.guided = film, plain.ledger = state.stats.ledger;
+  if (plain.taken && film.splats)
+    plain.guided = film, plain.ledger = state.stats.ledger, plain.adaptive = state.adaptive;
 }
 
 }  // namespace ajar

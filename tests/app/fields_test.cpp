@@ -291,14 +291,14 @@ TEST_F(FieldsUsed, OfARoomInAHugeSceneComeBack) {
   std::vector<std::string> arguments = {"render", scene,           "-q",           "--size",       "64x64",
                                         "--plan", "all",           "--integrator", "guided-bdpt",  "-o",
                                         out,      "--save-fields", fields,         "--checkpoint", state};
-  const auto with_spp = [&](const char* spp) {
+  const auto with = [&](const std::vector<std::string>& more) {
     std::vector<std::string> all = arguments;
-    all.insert(all.end(), {"--spp", spp});
+    all.insert(all.end(), more.begin(), more.end());
     return error([&] { run_command_line(all); });
   };
-  EXPECT_EQ(with_spp("5"), "");
+  EXPECT_EQ(with({"--spp", "5"}), "");
   told({});
-  EXPECT_EQ(with_spp("6"), "") << "from the checkpoint";
+  EXPECT_EQ(with({"--spp", "6", "--resume", state}), "") << "from the checkpoint";
 }
 
 }  // namespace

@@ -139,7 +139,7 @@ TEST_P(LearnedFields, SampleAgreesWithDensity) {
             const Vec3 local = unflat(f, at);
             return double(pdf(f, field, cell, beside, f.cells[cell].frame.to_world(local)) / flat_density(f, local));
           },
-          {.rows = rows, .columns = columns, .samples = 60'000, .quadrature = 8, .level = 1e-6});
+          {.rows = rows, .columns = columns, .samples = 60'000, .quadrature = 16, .level = 1e-6});
       EXPECT_TRUE(r.ok) << "cell " << cell << ": " << r.message;
     }
   }

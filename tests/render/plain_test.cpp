@@ -169,7 +169,7 @@ void add_caustic(Film& film) {
 void take_over(RenderState& state) {
   state.plain.taken = state.plain.settled = true;
   state.plain.passes = state.film.passes, state.plain.guided = state.film;
-  state.plain.ledger = state.stats.ledger;
+  state.plain.ledger = state.stats.ledger, state.plain.adaptive = state.adaptive;
 }
 
 void expect_same_image(const RenderState& a, const RenderState& b) {
@@ -254,7 +254,7 @@ TEST(Plain, GivesBackWhatIsRare) {
   const Scene scene = load_scene(source_path("scenes/environment/environment.xml"), load);
   const Accel accel(scene);
   RenderOptions sparing_one = sparing("guided-bdpt", 68), other = options_of("guided-bdpt", 68);
-  sparing_one.seed = other.seed = 1;
+  sparing_one.seed = other.seed = 2;
   const RenderState state = rendered(scene, accel, sparing_one);
   EXPECT_FALSE(state.plain.taken);
   EXPECT_GE(state.plain.returned, 4u);

@@ -284,7 +284,7 @@ TEST(SuiteOptions, ThoseThatDifferFromTheirDefaults) {
   options.limit_fireflies = true;
   EXPECT_EQ(options_json(options, false).dump(),
             R"({"integrator":"path","sampler":"independent","limit_fireflies":true})");
-  EXPECT_EQ(options_json(options).size(), 15u);
+  EXPECT_EQ(options_json(options).size(), 16u);
 }
 
 }  // namespace

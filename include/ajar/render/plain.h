@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ajar/film/film.h"
+#include "ajar/render/adaptive.h"
 #include "ajar/render/ledger.h"
 
 namespace ajar {
@@ -48,6 +49,7 @@ struct Plain {
   PassHalves seen;
   Film guided;            ///< the image when path tracing took over, while it may still be given back; else empty
   Ledger ledger;          ///< of that image
+  Adaptive adaptive;      ///< of that image, too
   uint32_t returned = 0;  ///< passes of path tracing that were dropped when it was
   uint32_t merged = 0;    ///< passes after which merging was left out; 0: it was not
   Film with_merging;      ///< the image with it, while the one without has fewer passes; else empty
