@@ -27,7 +27,8 @@ struct RenderArguments {
   int train = 0;
   std::optional<float> merge_radius;
   int final_gather = 0;
-  bool even = false, limit_fireflies = false, no_next_event = false, png = false, half = false, quiet = false, lenient = false;
+  bool even = false, limit_fireflies = false, no_next_event = false, png = false, half = false, quiet = false,
+       lenient = false;
 };
 
 /// Adds them to a command, which must not outlive them.
