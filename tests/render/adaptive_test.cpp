@@ -100,17 +100,26 @@ double light_of(const RenderState& state) {
   return std::accumulate(pixels.begin(), pixels.end(), 0.0) / double(pixels.size());
 }
 
-// A sky that is seen as it is, and noisy things below it.
-TEST(Adaptive, APassIsTheMeanOfAPixelsSamples) {
+struct Both {
+  RenderState more, even;
+};
+
+// Of a sky that is seen as it is, and noisy things below it.
+Both with_and_without(RenderOptions options) {
   LoadOptions load;
   load.defines = {{"resx", "64"}, {"resy", "36"}};
   const Scene scene = load_scene(source_path("scenes/materials/materials.xml"), load);
   const Accel accel(scene);
+  Both out{rendered(scene, accel, options), {}};
+  options.even = true;
+  out.even = rendered(scene, accel, options);
+  return out;
+}
+
+TEST(Adaptive, APassIsTheMeanOfAPixelsSamples) {
   RenderOptions options = statistical("guided-bdpt", 6);
   options.spp = 33;
-  const RenderState more = rendered(scene, accel, options);
-  options.even = true;
-  const RenderState even = rendered(scene, accel, options);
+  const auto [more, even] = with_and_without(options);
   EXPECT_TRUE(even.adaptive.spread.empty());
   EXPECT_NEAR(light_of(more), light_of(even), 0.03 * light_of(even));
   const auto [least, most] = std::minmax_element(more.adaptive.counts.begin(), more.adaptive.counts.end());
@@ -123,16 +132,10 @@ TEST(Adaptive, APassIsTheMeanOfAPixelsSamples) {
 
 // What the samples of a pass see differs: else more of them would bring nothing.
 TEST(Adaptive, FurtherSamplesHaveNumbersOfTheirOwn) {
-  LoadOptions load;
-  load.defines = {{"resx", "64"}, {"resy", "36"}};
-  const Scene scene = load_scene(source_path("scenes/materials/materials.xml"), load);
-  const Accel accel(scene);
   RenderOptions options = statistical("guided-bdpt", 2);
   options.sampler = SamplerKind::sobol;
   options.spp = 129;
-  const RenderState more = rendered(scene, accel, options);
-  options.even = true;
-  const RenderState even = rendered(scene, accel, options);
+  const auto [more, even] = with_and_without(options);
   double before = 0, now = 0;
   const Picture a = variance(even.film), b = variance(more.film);
   for (size_t i = 0; i < more.adaptive.counts.size(); ++i)
