@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "ajar/accel/sight.h"
 #include "ajar/core/parallel.h"
 #include "ajar/core/sampler.h"
 #include "ajar/core/warp.h"
@@ -46,7 +47,9 @@ void walk(const Scene& scene, const Accel& accel, Side side, uint32_t number, st
   if (!start(scene, side, sampler, ray)) return;
   for (uint32_t i = 0; i < bounces; ++i) {
     Hit hit;
-    if (!accel.intersect(ray.o, ray.d, ray.t_min, ray.t_max, hit)) return;
+    const bool looks = i == 0 && side == Side::camera;
+    if (!(looks ? first_seen(scene, accel, ray, hit) : accel.intersect(ray.o, ray.d, ray.t_min, ray.t_max, hit)))
+      return;
     const Surface surface = make_surface(scene, hit, ray.o, ray.d);
     const Vec3 n = glm::dot(surface.ng, ray.d) > 0 ? -surface.ng : surface.ng;
     Frame frame = surface.frame;

@@ -1,5 +1,7 @@
 #include "ajar/join/connect.h"
 
+#include "ajar/accel/sight.h"
+
 namespace ajar {
 namespace {
 
@@ -29,7 +31,7 @@ Shares shares_from(const Vertex& v, double first, double light_paths) {
 bool join_hit(const Scene& scene, const Fields* fields, const Subpath& camera, const Surface& surface, Candidate& out) {
   const LightPoint point = light_point(scene, surface);
   const Vertex& v = camera[camera.n - 1];
-  if (point.light == none) return false;
+  if (point.light == none || !shows_lights(scene.camera, camera.n - 1)) return false;
   const Rgb radiance = emitted(scene, surface, v.guide.wo);
   if (is_black(radiance)) return false;
   out.value = v.beta * radiance;
@@ -45,6 +47,7 @@ bool join_hit(const Scene& scene, const Fields* fields, const Subpath& camera, c
 
 bool join_escape(const Scene& scene, const Fields* fields, uint32_t light, const Subpath& camera, const Walk& walk,
                  Candidate& out) {
+  if (!shows_lights(scene.camera, camera.n)) return false;
   const Rgb radiance = environment(scene, light, walk.d);
   if (is_black(radiance)) return false;
   out.value = walk.beta * radiance;
@@ -119,6 +122,7 @@ bool join_vertices(const LightEnd& light, std::span<const Vertex> camera, double
 bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int s, double share, double light_paths,
                  Candidate& out) {
   const Vertex& a = light[s - 1];
+  if (s == 1 ? !shows_lights(scene.camera, 1) : is_passed(scene, a.shape)) return false;
   CameraConnection k;
   if (a.infinite || !connect(scene.camera, a.p, lens, scene.filter.radius, k)) return false;
   const double cosine = a.ng == Vec3(0) ? 1 : std::abs(glm::dot(a.ng, k.w));

@@ -1,5 +1,7 @@
 #include "ajar/path/walk.h"
 
+#include "ajar/accel/sight.h"
+
 namespace ajar {
 namespace {
 
@@ -96,8 +98,11 @@ double direct_share(const Scene& scene, const Vertex& x, const LightPoint& point
 bool step(const Scene& scene, const Accel& accel, const WalkOptions& options, Subpath& subpath, Walk& walk,
           Surface& surface) {
   walk.sum = sum_of_last(options, subpath, walk);
+  const CameraRay ray{walk.o, walk.d, walk.t_min, walk.t_max};
+  const bool looks = subpath.n == 1 && walk.side == Side::camera;
   Hit hit;
-  if (!accel.intersect(walk.o, walk.d, walk.t_min, walk.t_max, hit)) return false;
+  if (!(looks ? first_seen(scene, accel, ray, hit) : accel.intersect(ray.o, ray.d, ray.t_min, ray.t_max, hit)))
+    return false;
   surface = make_surface(scene, hit, walk.o, walk.d);
   Vertex& v = subpath.add();
   const Vertex& before = subpath[subpath.n - 2];

@@ -50,7 +50,7 @@ void add(Work& work, Candidate& c, int s, int t) {
 bool add_if_visible(Work& work, Candidate& c, int s, int t) {
   ++work.scratch.counters.shadow_rays;
   ++work.scratch.ledger->at(s, t).rays;
-  if (!visible(*work.job.accel, c.segment)) return false;
+  if (!is_unblocked(work.job, c.segment, t)) return false;
   add(work, c, s, t);
   return true;
 }

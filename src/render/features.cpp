@@ -1,3 +1,4 @@
+#include "ajar/accel/sight.h"
 #include "ajar/core/parallel.h"
 #include "ajar/core/sampler.h"
 #include "ajar/field/guide.h"
@@ -12,7 +13,7 @@ void add_first_hit(const Scene& scene, const Accel& accel, const Vec2& raster, c
                    float* out) {
   const CameraRay ray = generate(scene.camera, raster, lens);
   Hit hit;
-  if (!accel.intersect(ray.o, ray.d, ray.t_min, ray.t_max, hit)) return;
+  if (!first_seen(scene, accel, ray, hit)) return;
   Guide guide;
   const Surface surface = make_surface(scene, hit, ray.o, ray.d);
   make_guide(scene, nullptr, Side::camera, surface, -ray.d, guide);

@@ -2,6 +2,7 @@
 // Leaves: what one path's tracing reads (Job) and writes (Scratch), the same for every integrator.
 #pragma once
 
+#include "ajar/accel/sight.h"
 #include "ajar/film/pyramid.h"
 #include "ajar/join/connect.h"
 #include "ajar/join/photons.h"
@@ -120,6 +121,11 @@ struct alignas(64) Scratch {
 
   static constexpr uint64_t no_path = ~0ull;
 };
+
+/// Whether nothing is in the way of a join to the t-th camera vertex; the first is the lens.
+inline bool is_unblocked(const Job& job, const Segment& s, int t) {
+  return t == 1 ? camera_sees(*job.scene, *job.accel, s.o, s.d, s.t_max) : visible(*job.accel, s);
+}
 
 void trace_path(const Job&, Sample&, Scratch&);
 void trace_bdpt(const Job&, Sample&, Scratch&);

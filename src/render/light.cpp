@@ -18,7 +18,7 @@ void trace_light(const Job& job, Sample& sample, Scratch& scratch) {
     if (joins && join_camera(scene, sample.lens, light, light.n, 1, job.walk.light_paths, c)) {
       ++scratch.counters.shadow_rays;
       ++scratch.ledger->at(light.n, 1).rays;
-      if (visible(*job.accel, c.segment) && accept(c.value, sample, scratch)) {
+      if (is_unblocked(job, c.segment, 1) && accept(c.value, sample, scratch)) {
         scratch.splats->push_back({c.raster, c.value});
         gain_splat(job, scratch);
       }

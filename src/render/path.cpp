@@ -101,15 +101,17 @@ void trace_path(const Job& job, Sample& sample, Scratch& scratch) {
     Hit hit;
     ++scratch.counters.camera_rays;
     const int t = edges + 1;  // vertices
-    const bool hits = job.accel->intersect(f.o, f.d, f.t_min, f.t_max, hit);
+    const bool hits =
+        edges == 1 ? first_seen(scene, *job.accel, ray, hit) : job.accel->intersect(f.o, f.d, f.t_min, f.t_max, hit);
+    const bool shows = shows_lights(scene.camera, edges);
     charge(scratch, scratch.ledger->camera_ticks);
     if (!hits) {
-      if (!scene.infinite_lights.empty())
+      if (shows && !scene.infinite_lights.empty())
         add(sample, scratch, 0, t, f.beta * hit_sky(scene, h, guide, f.d, f.pdf, f.alone));
       return;
     }
     const Surface at = make_surface(scene, hit, f.o, f.d);
-    if (scene.shapes[hit.shape].light != none)
+    if (shows && scene.shapes[hit.shape].light != none)
       add(sample, scratch, 0, t, f.beta * hit_light(scene, h, guide, at, f.d, f.pdf, f.alone));
     if (edges >= job.walk.max_edges) return;
     make_guide(scene, job.walk.fields, Side::camera, at, -f.d, guide);

@@ -39,16 +39,17 @@ void follow(const Job& job, Sample& sample, Scratch& scratch, Walk walk, bool ga
   };
   do {
     ++scratch.counters.camera_rays;
+    const bool shows = !gathers && shows_lights(scene.camera, camera.n);
     const bool hit = step(scene, *job.accel, job.walk, camera, walk, surface);
     charge(scratch, scratch.ledger->camera_ticks);
     if (!hit) {
       for (const uint32_t light : scene.infinite_lights)
-        if (!gathers) add(camera.n + 1, walk.beta * environment(scene, light, walk.d));
+        if (shows) add(camera.n + 1, walk.beta * environment(scene, light, walk.d));
       return;
     }
     const Vertex& v = camera[camera.n - 1];
     const bool shines = scene.shapes[surface.shape].light != none;
-    if (shines && !gathers) add(camera.n, v.beta * emitted(scene, surface, v.guide.wo));
+    if (shines && shows) add(camera.n, v.beta * emitted(scene, surface, v.guide.wo));
     if (camera.n > job.walk.max_edges) return;
     if (!connectable(v.guide)) continue;
     join_merged(job, sample, scratch);

@@ -26,7 +26,7 @@ void join_lens(const Job& job, Sampler& sampler, double share, Scratch& scratch,
   Candidate c;
   if (!join_camera(*job.scene, lens, light, light.n, share, job.walk.light_paths, c)) return;
   ++scratch.counters.shadow_rays;
-  if (!visible(*job.accel, c.segment)) return;
+  if (!is_unblocked(job, c.segment, 1)) return;
   c.shares.inner = c.shares.seen = 0;
   // The film takes as many light subpaths as it has pixels.
   const double pixels = double(camera.crop_width) * camera.crop_height;

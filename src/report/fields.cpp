@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "ajar/accel/sight.h"
 #include "ajar/scene/geometry.h"
 
 namespace ajar {
@@ -30,7 +31,7 @@ Looks look(const Scene& scene, const Accel& accel, const Fields& fields) {
     const int x = int(i) % out.width + camera.crop_x, y = int(i) / out.width + camera.crop_y;
     const CameraRay ray = generate(camera, Vec2(float(x) + 0.5f, float(y) + 0.5f), Vec2(0.5f));
     Hit hit;
-    if (!accel.intersect(ray.o, ray.d, ray.t_min, ray.t_max, hit)) continue;
+    if (!first_seen(scene, accel, ray, hit)) continue;
     const Surface s = make_surface(scene, hit, ray.o, ray.d);
     const float cosine = glm::dot(s.ng, ray.d);
     out.at[i].shade = std::abs(cosine);

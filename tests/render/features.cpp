@@ -313,6 +313,18 @@ Scene with_clipped_orthographic() {
   return finished(std::move(scene));
 }
 
+// Lamps that scatter, and a sky, which the camera sees in what they light alone; one lamp is in the way of another.
+Scene with_hidden_lamps(Lamps lamps) {
+  Scene scene = open_stage();
+  set_camera(scene, {0, 0.3f, 4}, {0, -0.1f, 0}, 50, 24, 24);
+  const uint32_t grey = add_diffuse(scene, Rgb(0.6f));
+  add_area_light(scene, add_mesh(scene, globe({0.3f, 0.4f, 0.8f}, 0.25f, 5), grey), Rgb(4, 3, 2));
+  add_area_light(scene, add_sphere(scene, {-0.2f, -0.2f, 0.2f}, 0.3f, grey), Rgb(1, 2, 3));
+  add_light(scene, LightKind::constant, Rgb(0.3f));
+  scene.camera.lamps = lamps;
+  return finished(std::move(scene));
+}
+
 // Surfaces that meet under small angles and lights that touch surfaces: vertices almost touch.
 Scene with_corners() {
   Scene scene = stage();
@@ -453,6 +465,8 @@ const Feature all[] = {
     {"principal_point", [] { return with_camera(CameraKind::perspective); }},
     {"crop", with_crop},
     {"clip_planes", with_clip_planes},
+    {"lamps_dark", [] { return with_hidden_lamps(Lamps::dark); }},
+    {"lamps_gone", [] { return with_hidden_lamps(Lamps::gone); }},
     {"corners", with_corners},
     {"tent", [] { return with_filter(FilterKind::tent); }, "pbl", 3},
     {"gaussian", [] { return with_filter(FilterKind::gaussian); }, "pbl", 3},

@@ -11,6 +11,10 @@ enum class CameraKind : uint8_t { perspective, thinlens, orthographic };
 /// Along what the field of view was given; smaller and larger: of the film's sides.
 enum class ViewAxis : uint8_t { x, y, smaller, larger, diagonal };
 
+/// What the camera itself sees of lights: what they emit; their shapes, but nothing that is emitted; or neither, as if
+/// it looked through them. What surfaces show of them is the same.
+enum class Lamps : uint8_t { seen, dark, gone };
+
 /// Raster coordinates are in pixels of the full image, (0,0) the upper left corner; x right, y down.
 struct Camera {
   CameraKind kind = CameraKind::perspective;
@@ -24,7 +28,11 @@ struct Camera {
   float aperture = 0;    ///< thinlens: radius
   float focus = 1;       ///< thinlens: distance to the plane in focus
   float near_clip = 0, far_clip = infinity;  ///< camera-space depth; near may be negative when orthographic
+  Lamps lamps = Lamps::seen;
 };
+
+/// Whether light that comes to the lens by so many edges from where it was emitted is in the image.
+inline bool shows_lights(const Camera& c, int edges) { return edges > 1 || c.lamps == Lamps::seen; }
 
 struct CameraRay {
   Vec3 o{0};

@@ -283,7 +283,8 @@ void load_integrator(Loader& loader, const Node& node) {
   if (known && type.starts_with("prb") && type != "prbvolpath") hints.max_depth = 6;  // Mitsuba's default for them
   read_depth(p, known);
   if (known && type.starts_with("direct")) hints.max_depth = 2;  // light of what the camera sees, and no further
-  if (boolean(p, "hide_emitters", false)) note(loader, node, "hide_emitters is not supported: lights stay visible");
+  const Lamps hidden = loader.document.old ? Lamps::dark : Lamps::gone;
+  loader.scene.camera.lamps = boolean(p, "hide_emitters", false) ? hidden : Lamps::seen;
   const Open open(loader, node);
   if (const std::vector<const Node*> inner = nested(p, "integrator"); !inner.empty())
     return load_integrator(loader, *inner.front());  // aov, moment and others measure what another one renders

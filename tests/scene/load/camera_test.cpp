@@ -328,9 +328,22 @@ TEST(Integrators, AreHints) {
   const Scene s = load_inside("<integrator type='manifold_path'><integer name='max_depth' value='-1'/></integrator>");
   EXPECT_TRUE(says(s.notes, "Ajar has no integrator of this name"));
   EXPECT_EQ(s.hints.integrator, "");
-  EXPECT_TRUE(
-      says(load_inside("<integrator type='path'><boolean name='hideEmitters' value='true'/></integrator>").notes,
-           "hide_emitters"));
+}
+
+// 0.6 leaves out what is emitted, later versions what emits.
+TEST(Integrators, MayHideLights) {
+  const auto lamps = [](const std::string& text, const char* version = "3.0.0") {
+    const Scene scene = load_inside(text, {}, version);
+    EXPECT_EQ(scene.notes, load_inside("<integrator type='path'/>", {}, version).notes);
+    return scene.camera.lamps;
+  };
+  const std::string hides = "<integrator type='path'><boolean name='hide_emitters' value='true'/></integrator>",
+                    old = "<integrator type='path'><boolean name='hideEmitters' value='true'/></integrator>";
+  EXPECT_EQ(lamps("<integrator type='path'/>"), Lamps::seen);
+  EXPECT_EQ(lamps("<integrator type='path'><boolean name='hide_emitters' value='false'/></integrator>"), Lamps::seen);
+  EXPECT_EQ(lamps(hides), Lamps::gone);
+  EXPECT_EQ(lamps(old, "0.6.0"), Lamps::dark);
+  EXPECT_EQ(lamps("<integrator type='aov'>" + hides + "</integrator>"), Lamps::gone);
 }
 
 TEST(Integrators, NumbersThatAskForNothingAreErrors) {
