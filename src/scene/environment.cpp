@@ -21,31 +21,46 @@ Cell cell_at(const Distribution2D& table, const Vec2& texels) {
           std::clamp(y + 1, 0, h - 1),        p.x - corner.x,         p.y - corner.y};
 }
 
-Vec2 texels_of(const Distribution2D& table, const Vec3& w) {
+// Where the poles are among the rows of texels, and how many rows they are apart.
+struct Rows {
+  float top, steps;
+};
+Rows rows_of(const Environment& e) {
+  return e.polar ? Rows{0.5f, float(e.table.height - 1)} : Rows{0, float(e.table.height)};
+}
+
+// A row at a pole reaches from there to one side alone: all of its tent is on that side.
+float folded(const Environment& e, int y) { return e.polar && (y == 0 || y == e.table.height - 1) ? 2 : 1; }
+
+Vec2 texels_of(const Environment& e, const Vec3& w) {
+  const Rows rows = rows_of(e);
   const float phi = std::atan2(w.x, -w.z), theta = std::atan2(std::sqrt(w.x * w.x + w.z * w.z), w.y);
   const float u = phi * (inv_pi / 2);
-  return {(u < 0 ? u + 1 : u) * float(table.width), theta * inv_pi * float(table.height)};
+  return {(u < 0 ? u + 1 : u) * float(e.table.width), rows.top + theta * inv_pi * rows.steps};
 }
 
 // Density per texel of the map, turned into solid angle. At the poles themselves it would be infinite.
-float to_solid(const Distribution2D& table, float per_texel, float sin_theta) {
-  return per_texel * float(table.width) * float(table.height) / (2 * pi * pi * std::max(sin_theta, 1e-7f));
+float to_solid(const Environment& e, float per_texel, float sin_theta) {
+  return per_texel * float(e.table.width) * rows_of(e).steps / (2 * pi * pi * std::max(sin_theta, 1e-7f));
 }
 
-float density(const Distribution2D& table, const Vec2& texels, float sin_theta) {
+float density(const Environment& e, const Vec2& texels, float sin_theta) {
+  const Distribution2D& table = e.table;
   const Cell c = cell_at(table, texels);
   const float top = table.mass({c.x0, c.y0}) * (1 - c.fx) + table.mass({c.x1, c.y0}) * c.fx;
   const float bottom = table.mass({c.x0, c.y1}) * (1 - c.fx) + table.mass({c.x1, c.y1}) * c.fx;
-  const float per_texel = top * (1 - c.fy) + bottom * c.fy;
-  return to_solid(table, per_texel, sin_theta);
+  const float per_texel = top * folded(e, c.y0) * (1 - c.fy) + bottom * folded(e, c.y1) * c.fy;
+  return to_solid(e, per_texel, sin_theta);
 }
 
 // Tent over (-1, 1).
 float tent(float u) { return u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 - 2 * u); }
 
-// Integral of sin(theta) against the tent of a row of texels; the first and last row reach flat to the poles.
-double solid_of_row(int y, int height) {
-  const double h = std::numbers::pi / height;
+// Integral of sin(theta) against the tent of a row of texels; the first and last row reach flat to the poles, or stand
+// at them.
+double solid_of_row(int y, int height, bool polar) {
+  const double h = std::numbers::pi / (polar ? height - 1 : height);
+  if (polar) return y == 0 || y == height - 1 ? 1 - std::sin(h) / h : std::sin(y * h) * 2 * (1 - std::cos(h)) / h;
   if (height == 1) return 2;
   if (y == 0 || y == height - 1) return 1 - (std::sin(1.5 * h) - std::sin(0.5 * h)) / h;
   return std::sin((y + 0.5) * h) * 2 * (1 - std::cos(h)) / h;
@@ -55,7 +70,7 @@ double solid_of_row(int y, int height) {
 
 Rgb environment_radiance(const Scene& scene, const Environment& e, const Vec3& w) {
   const Image& image = scene.images[e.image];
-  const Cell c = cell_at(e.table, texels_of(e.table, w));
+  const Cell c = cell_at(e.table, texels_of(e, w));
   const Rgb top = texel(image, c.x0, c.y0) * (1 - c.fx) + texel(image, c.x1, c.y0) * c.fx;
   const Rgb bottom = texel(image, c.x0, c.y1) * (1 - c.fx) + texel(image, c.x1, c.y1) * c.fx;
   return (top * (1 - c.fy) + bottom * c.fy) * e.scale;
@@ -63,23 +78,18 @@ Rgb environment_radiance(const Scene& scene, const Environment& e, const Vec3& w
 
 float environment_pdf(const Environment& e, const Vec3& w) {
   if (e.table.rows.sum == 0) return 0;
-  return density(e.table, texels_of(e.table, w), std::sqrt(w.x * w.x + w.z * w.z));
+  return density(e, texels_of(e, w), std::sqrt(w.x * w.x + w.z * w.z));
 }
 
 namespace {
 
-// A tent around a texel's centre, folded at the poles where rows are repeated outwards: the sum of tents is the
-// bilinear interpolation of the texels' weights.
+// A tent around a texel's centre, folded at the poles, where rows are repeated outwards or stand: the sum of tents is
+// the bilinear interpolation of the texels' weights.
 Vec2 around(const Environment& e, const Distribution2D::Cell& c, const Vec2& u) {
-  const float w = float(e.table.width), h = float(e.table.height);
+  const Rows rows = rows_of(e);
+  const float w = float(e.table.width), low = rows.top, high = rows.top + rows.steps;
   const float x = float(c.x) + 0.5f + tent(u.x), y = float(c.y) + 0.5f + tent(u.y);
-  return {x < 0 ? x + w : (x >= w ? x - w : x), y < 0 ? -y : (y > h ? 2 * h - y : y)};
-}
-
-Vec3 direction_at(const Environment& e, const Vec2& texels, float& sin_theta) {
-  const float phi = 2 * pi * (texels.x / float(e.table.width)), theta = pi * (texels.y / float(e.table.height));
-  sin_theta = std::sin(theta);
-  return {std::sin(phi) * sin_theta, std::cos(theta), -std::cos(phi) * sin_theta};
+  return {x < 0 ? x + w : (x >= w ? x - w : x), y < low ? 2 * low - y : (y > high ? 2 * high - y : y)};
 }
 
 // Probability of a texel when its tile is drawn from.
@@ -91,15 +101,23 @@ float share_of(const Distribution2D& table, const Tile& tile, int x, int y) {
 
 }  // namespace
 
+Vec3 direction_at(const Environment& e, const Vec2& texels, float& sin_theta) {
+  const Rows rows = rows_of(e);
+  const float phi = 2 * pi * (texels.x / float(e.table.width));
+  const float theta = std::clamp(pi * ((texels.y - rows.top) / rows.steps), 0.0f, pi);
+  sin_theta = std::sin(theta);
+  return {std::sin(phi) * sin_theta, std::cos(theta), -std::cos(phi) * sin_theta};
+}
+
 int tile_densities(const Environment& e, const Tiling& tiling, const Vec3& w, TileDensity out[most_shares]) {
-  const Cell c = cell_at(e.table, texels_of(e.table, w));
+  const Cell c = cell_at(e.table, texels_of(e, w));
   const int xs[] = {c.x0, c.x1, c.x0, c.x1}, ys[] = {c.y0, c.y0, c.y1, c.y1};
   const float shares[] = {(1 - c.fx) * (1 - c.fy), c.fx * (1 - c.fy), (1 - c.fx) * c.fy, c.fx * c.fy};
-  const float solid = to_solid(e.table, 1, std::sqrt(w.x * w.x + w.z * w.z));
+  const float solid = to_solid(e, 1, std::sqrt(w.x * w.x + w.z * w.z));
   int n = 0;
   for (int i = 0; i < 4; ++i) {
     const uint32_t tile = tile_of(tiling, xs[i], ys[i]);
-    const float pdf = shares[i] * share_of(e.table, tiling.tiles[tile], xs[i], ys[i]) * solid;
+    const float pdf = shares[i] * folded(e, ys[i]) * share_of(e.table, tiling.tiles[tile], xs[i], ys[i]) * solid;
     int k = 0;
     while (k < n && out[k].tile != tile) ++k;
     if (k == n) out[n++] = {tile, 0};
@@ -127,7 +145,7 @@ Vec3 sample_environment(const Environment& e, Vec2 u, float& pdf) {
   const Vec2 at = around(e, c, u);
   float sin_theta;
   const Vec3 w = direction_at(e, at, sin_theta);
-  if (sin_theta > 1e-7f) pdf = density(e.table, at, sin_theta);
+  if (sin_theta > 1e-7f) pdf = density(e, at, sin_theta);
   return w;
 }
 
@@ -135,12 +153,13 @@ double environment_total(const Environment& e) {
   return e.table.rows.sum * (2 * std::numbers::pi / e.table.width) * double(e.scale);
 }
 
-Environment make_environment(const Scene& scene, uint32_t id, float scale) {
+Environment make_environment(const Scene& scene, uint32_t id, float scale, bool polar) {
   const Image& image = scene.images[id];
+  if (image.height == 1) polar = false;
   std::vector<float> weights(size_t(image.width) * size_t(image.height));
   std::vector<int> bad(size_t(image.height), -1);
   parallel_for(image.height, [&](int y) {
-    const float solid = float(solid_of_row(y, image.height));
+    const float solid = float(solid_of_row(y, image.height, polar));
     for (int x = 0; x < image.width; ++x) {
       const Rgb c = texel(image, x, y);
       if (!(c.x >= 0 && c.y >= 0 && c.z >= 0 && is_finite(c))) bad[size_t(y)] = x;
@@ -151,7 +170,7 @@ Environment make_environment(const Scene& scene, uint32_t id, float scale) {
     if (bad[size_t(y)] >= 0)
       throw Error(
           fmt::format("{}: pixel ({}, {}) is negative or not finite; repair the image", image.name, bad[size_t(y)], y));
-  return {id, scale, Distribution2D(weights, image.width, image.height)};
+  return {id, scale, polar, Distribution2D(weights, image.width, image.height)};
 }
 
 }  // namespace ajar

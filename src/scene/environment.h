@@ -20,6 +20,9 @@ inline Vec3 to_local(const Light& light, const Vec3& w, float& stretch) {
   return v / l;
 }
 
+/// Unit local direction of a position in texels; beyond a pole the pole's.
+Vec3 direction_at(const Environment& e, const Vec2& texels, float& sin_theta);
+
 /// Densities per solid angle at unit local direction w of the tiles that reach there.
 struct TileDensity {
   uint32_t tile = 0;

@@ -146,8 +146,8 @@ void add_infinite(Gatherer& g, uint32_t id, double watts) {
   const bool even = light.kind == LightKind::constant;
   for (uint32_t k = 0; k < t.tiles.size(); ++k) {
     const Tile& tile = t.tiles[k];
-    const Vec2 size(t.width, t.height);
     if (even) {
+      const Vec2 size(t.width, t.height);
       set_cone(
           Vec2(tile.low), Vec2(tile.high),
           [&](const Vec2& at) {
@@ -157,16 +157,16 @@ void add_infinite(Gatherer& g, uint32_t id, double watts) {
       g.add(id, k, b, watts / double(t.tiles.size()), true);
       continue;
     }
+    const Environment& map = g.scene.environments[light.environment];
     const Mat3 turn(light.to_world);
     set_cone(
         Vec2(tile.low) - 0.5f, Vec2(tile.high) + 0.5f,
         [&](const Vec2& at) {
-          const float phi = 2 * pi * at.x / size.x, theta = std::clamp(pi * at.y / size.y, 0.0f, pi);
-          const Vec3 local(std::sin(phi) * std::sin(theta), std::cos(theta), -std::cos(phi) * std::sin(theta));
-          return glm::normalize(turn * local);
+          float sin_theta;
+          return glm::normalize(turn * direction_at(map, at, sin_theta));
         },
         b);
-    g.add(id, k, b, watts * mass_of(g.scene.environments[light.environment].table, tile), true);
+    g.add(id, k, b, watts * mass_of(map.table, tile), true);
   }
 }
 

@@ -90,12 +90,12 @@ std::vector<float> sky(int width, int height) {
   return rgb;
 }
 
-Scene with_envmap() {
+Scene with_envmap(bool polar) {
   Scene scene = open_stage();
   const Slot image = add_image(scene, 16, 8, sky(16, 8));
   Light& light = scene.lights[add_light(scene, LightKind::envmap, Rgb(1))];
   light.to_world = glm::rotate(Mat4(1), 0.7f, glm::normalize(Vec3(0.2f, 1, 0.1f)));
-  scene.environments.push_back(make_environment(scene, scene.textures[image.texture].image, 0.5f));
+  scene.environments.push_back(make_environment(scene, scene.textures[image.texture].image, 0.5f, polar));
   light.environment = 0;
   return finished(std::move(scene));
 }
@@ -449,10 +449,11 @@ const Feature all[] = {
      [] {
        return lit_by(LightKind::constant, {0, -1, 0});
      }},
-    {"envmap", with_envmap},
+    {"envmap", [] { return with_envmap(false); }},
+    {"envmap_polar", [] { return with_envmap(true); }},
     {"envmap_seen",
      [] {
-       Scene scene = with_envmap();
+       Scene scene = with_envmap(false);
        set_camera(scene, {0, 0.5f, 4.5f}, {0, 0.3f, 0}, 60, 24, 24);
        return finished(std::move(scene));
      },

@@ -154,6 +154,20 @@ TEST(Direct, InfiniteLightsGiveTheirIrradiance) {
   }
 }
 
+// What each row of a map of five rows says is seen at its own height: the first and last at the poles, or half a row
+// from them.
+TEST(Direct, RowsOfAMapStandAtTheirHeights) {
+  const Image rows = kit::float_image(4, 5, [](int, int y) { return float(1 << y); });
+  for (const bool polar : {false, true}) {
+    const LitScene lit = kit::map_scene("rows", Mat4(1), rows, polar);
+    for (int y = 0; y < 5; ++y) {
+      const float theta = pi * (polar ? float(y) / 4 : (float(y) + 0.5f) / 5);
+      const Vec3 w(0.6f * std::sin(theta), std::cos(theta), 0.8f * std::sin(theta));
+      EXPECT_NEAR(environment(lit.scene, 0, w).x, 2 * float(1 << y), 1e-4) << polar << y;
+    }
+  }
+}
+
 Scene delta_scene(const Light& light) {
   Scene scene;
   kit::add_mesh(scene, kit::rectangle(Mat4(1)));

@@ -43,11 +43,11 @@ inline LitScene area_scene(const char* name, ShapeKind kind, const Mat4& m, bool
   return lit;
 }
 
-inline LitScene map_scene(const char* name, const Mat4& to_world, const Image& image) {
+inline LitScene map_scene(const char* name, const Mat4& to_world, const Image& image, bool polar = false) {
   LitScene lit{name, {}};
   add_mesh(lit.scene, rectangle(placed(0, Vec3(2), {1, 2, 3})));
   lit.scene.images.push_back(image);
-  lit.scene.environments.push_back(make_environment(lit.scene, 0, 2));
+  lit.scene.environments.push_back(make_environment(lit.scene, 0, 2, polar));
   Light light;
   light.kind = LightKind::envmap;
   light.environment = 0;
@@ -92,6 +92,10 @@ inline std::vector<LitScene> infinite_scenes() {
   all.push_back(map_scene("map, mirrored and stretched", turned * glm::scale(Mat4(1), Vec3(-2, 1, 1)), smooth));
   all.push_back(map_scene("sun", turned, sun));
   all.push_back(map_scene("bright pole", turned, pole));
+  all.push_back(map_scene("map, polar", turned, smooth, true));
+  all.push_back(map_scene("sun, polar", turned, sun, true));
+  all.push_back(map_scene("bright pole, polar", turned, pole, true));
+  all.push_back(map_scene("two rows, polar", turned, float_image(1, 2, [](int, int y) { return 1 + float(y); }), true));
   all.push_back(map_scene("one texel", Mat4(1), float_image(1, 1, [](int, int) { return 1.0f; })));
   return all;
 }

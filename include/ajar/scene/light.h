@@ -134,15 +134,17 @@ LightPoint light_point(const Scene& scene, uint32_t light, const Vec3& w);
 float power(const Scene& scene, uint32_t light);
 
 /// Image map over the sphere, bilinear. In the light's own space y is up and the direction (sin phi sin theta, cos
-/// theta, -cos phi sin theta) looks up u = phi / (2 pi), v = theta / pi, v = 0 on top: Mitsuba's latitude-longitude
-/// convention. Directions are drawn from the bilinear interpolation of luminance times sin(theta) at the texels:
-/// positive wherever the map is.
+/// theta, -cos phi sin theta) looks up u = phi / (2 pi), v = theta / pi, v = 0 on top: the latitude-longitude
+/// convention of Mitsuba 0.x. Polar, as in its later versions, the centres of the first and last row of texels are at
+/// the poles, v = 0 and 1. Directions are drawn from the bilinear interpolation of luminance times sin(theta) at the
+/// texels: positive wherever the map is.
 struct Environment {
   uint32_t image = none;
   float scale = 1;
+  bool polar = false;
   Distribution2D table;  ///< made by make_environment: the share of each texel
 };
 /// Throws Error where a texel is negative or not finite.
-Environment make_environment(const Scene& scene, uint32_t image, float scale);
+Environment make_environment(const Scene& scene, uint32_t image, float scale, bool polar = false);
 
 }  // namespace ajar

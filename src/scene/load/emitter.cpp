@@ -76,7 +76,7 @@ void envmap(Params& p) {
   const uint32_t image = limited_image(p.loader, p.node, stored, Colour::emission);
   light.to_world = orientation(regular_to_world(p));
   light.environment = uint32_t(p.loader.scene.environments.size());
-  p.loader.scene.environments.push_back(make_environment(p.loader.scene, image, float(scale)));
+  p.loader.scene.environments.push_back(make_environment(p.loader.scene, image, float(scale), !p.loader.document.old));
   add(p.loader, std::move(light));
 }
 

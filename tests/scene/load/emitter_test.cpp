@@ -47,6 +47,18 @@ TEST(Emitters, Envmap) {
   EXPECT_SAYS(error_of(emitter("envmap", file + "<float name='scale' value='-3'/>")), "negative");
 }
 
+// The centres of the first and last row of texels are at the poles; in version 0.x they are half a row from them.
+TEST(Emitters, EnvmapReachesThePoles) {
+  const std::string file = write_pfm("rows.pfm", {1, 1, 1, 9, 9, 9}, 2);  // from below
+  const auto seen = [&](const std::string& version) {
+    const std::string map = emitter("envmap", "<string name='filename' value='" + file + "'/>");
+    return environment(load_inside(map, {}, version), 0, glm::normalize(Vec3(0, 1, 1))).x;
+  };
+  EXPECT_NEAR(seen("3.0.0"), 7, 1e-4);
+  EXPECT_NEAR(seen("2.0.0"), 7, 1e-4);
+  EXPECT_NEAR(seen("0.6.0"), 9, 1e-4);
+}
+
 // Maps of bright lights have negative texels after resizing, and worse after mistakes.
 TEST(Emitters, EnvmapWithBadTexels) {
   const auto file = [](const std::string& path, const std::string& inside = "") {

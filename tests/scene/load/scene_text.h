@@ -40,8 +40,9 @@ inline std::string write_file(const std::string& name, const std::string& bytes)
 }
 
 /// A row of pixels, three numbers each, as they stand.
-inline std::string write_pfm(const std::string& name, const std::vector<float>& numbers) {
-  std::string bytes = "PF\n" + std::to_string(numbers.size() / 3) + " 1\n-1.0\n";
+inline std::string write_pfm(const std::string& name, const std::vector<float>& numbers, size_t rows = 1) {
+  const std::string size = std::to_string(numbers.size() / rows / 3) + " " + std::to_string(rows);
+  std::string bytes = "PF\n" + size + "\n-1.0\n";
   bytes.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(float));
   return write_file(name, bytes);
 }
