@@ -40,8 +40,9 @@ std::vector<double> deviations(const Film& film, const std::vector<double>& erro
 
 double count_for(double scale, double deviation) { return std::clamp(scale * deviation, 1.0, Adaptive::most); }
 
-// Counts of scale times the deviation: the scale at which a pass's error times its samples is least. `rest` is what
-// more of them do not mend; `share`, of their variance what the error shows.
+// Counts of scale times the deviation: the scale at which a pass's error times its samples is least, and more of them
+// only where they bring a hundredth: where all pixels are alike, and there is no rest, any number is as good, and
+// rounding would choose. `rest` is what more of them do not mend; `share`, of their variance what the error shows.
 double best_scale(const std::vector<double>& deviations, double rest, double share) {
   std::vector<double> sorted = deviations;
   const auto middle = sorted.begin() + std::ptrdiff_t(sorted.size() / 2);
@@ -58,7 +59,7 @@ double best_scale(const std::vector<double>& deviations, double rest, double sha
     }
     const double pixels = double(deviations.size());
     const double product = (rest + share * left / pixels) * samples;
-    if (product < least) least = product, best = scale;
+    if (product < 0.99 * least) least = product, best = scale;
   }
   return best;
 }

@@ -75,6 +75,14 @@ TEST(Adaptive, NoPixelHasASayInItsOwnCount) {
   for (const size_t pixel : some) EXPECT_EQ(images[0].counts[pixel], images[1].counts[pixel]) << pixel;
 }
 
+// Of pixels that are nearly alike eight samples a pass are as good as one, for the error times their number, to
+// rounding.
+TEST(Adaptive, WhereManyAreNoBetterThereAreFew) {
+  Adaptive a = half_noisy(0.001f, 0.00104f);
+  allot(even_film(0.0009), a);
+  EXPECT_LT(mean_count(a, 0, width), 1.1);
+}
+
 TEST(Adaptive, OneFireflyIsNotWorthSamples) {
   Adaptive a = half_noisy(0.001f, 0.001f);
   a.spread[10 * width + 10] = spread_of(100);
