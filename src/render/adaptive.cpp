@@ -66,10 +66,11 @@ double best_scale(const std::vector<double>& deviations, double rest, double sha
 
 }  // namespace
 
-double samples_of_pass(const Adaptive& adaptive) {
-  double samples = 0;
+double samples_of_pass(const Film& film, const Adaptive& adaptive) {
+  double samples = 0, pixels = double(adaptive.passes) * double(adaptive.spread.size());
   for (const PixelSpread& s : adaptive.spread) samples += count(s);
-  return adaptive.passes > 0 ? samples / adaptive.passes / double(adaptive.spread.size()) : 1;
+  for (uint32_t chunk = 0; chunk < film.chunks; ++chunk) pixels += double(tile_bounds(film, chunk).pixels());
+  return samples > 0 && pixels > 0 ? samples / pixels : 1;
 }
 
 void allot(const Film& film, Adaptive& adaptive) {

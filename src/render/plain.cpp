@@ -275,7 +275,7 @@ void try_plain(const Job& job, const RenderOptions& options, std::vector<Scratch
   trace_to(film.passes, without, film, squares, scratches, plain);
   const Counters& n = state.stats.counters;
   const double cost =
-      ray_cost(merges) * double(ray_count(n)) / double(n.camera_paths) * samples_of_pass(state.adaptive);
+      ray_cost(merges) * double(ray_count(n)) / double(n.camera_paths) * samples_of_pass(film, state.adaptive);
   const double samples = double(plain.seen.passes) * double(plain.seen.sum.size());
   const double pace = std::clamp(cost * samples / (path_ray * double(plain.rays)), 1.0, fastest);
   trace_to(uint32_t(pace * film.passes / 2) * 2, without, film, squares, scratches, plain);

@@ -80,7 +80,7 @@ void add_account(Json& record, const RenderState& state) {
   record["mean_path_edges"] = {{"camera", per(double(n.camera_rays), double(n.camera_paths))},
                                {"light", per(double(n.light_rays), double(n.light_paths))}};
   record["light_subpaths_per_sample"] = per(double(n.light_paths), double(n.camera_paths));
-  if (state.adaptive.passes > 0) record["camera_samples_of_a_pass"] = samples_of_pass(state.adaptive);
+  if (state.adaptive.passes > 0) record["camera_samples_of_a_pass"] = samples_of_pass(state.film, state.adaptive);
   record["goes_on"] = state.balance.goes_on;
   record["zero_contribution_paths"] = per(double(n.zero_paths), double(n.camera_paths));
   record["tracing"] = tracing_json(state.stats.ledger);

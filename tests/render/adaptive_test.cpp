@@ -90,6 +90,31 @@ TEST(Adaptive, OneFireflyIsNotWorthSamples) {
   EXPECT_NEAR(mean_count(a, 0, width), 1, 0.1);
 }
 
+// Squares of some lights have no place in a float.
+TEST(Adaptive, OneThatIsBrighterThanNumbersGoDoesNoHarm) {
+  Adaptive a = half_noisy(0.001f, 0.009f);
+  a.spread[10 * width + 30] = {1e18f, infinity, {passes / 2, passes / 2}};
+  allot(even_film(0.005), a);
+  ASSERT_FALSE(a.counts.empty());
+  for (const uint8_t count : a.counts) {
+    EXPECT_GE(count, 1);
+    EXPECT_LE(count, Adaptive::most);
+  }
+  EXPECT_NEAR(mean_count(a, width / 2 + 2, width), 3, 0.35);
+}
+
+TEST(Adaptive, APassAtWorkCountsByWhatIsDoneOfIt) {
+  Film film = even_film(0.005);
+  Adaptive a;
+  a.passes = 1, a.spread.resize(film.pixels());
+  for (PixelSpread& s : a.spread) s.counts[0] = 3;
+  EXPECT_EQ(samples_of_pass(film, a), 3);
+  film.chunks = 1;
+  for (int y = 0; y < tile; ++y)
+    for (int x = 0; x < tile; ++x) a.spread[size_t(y) * width + size_t(x)].counts[1] = 3;
+  EXPECT_NEAR(samples_of_pass(film, a), 3, 1e-12);
+}
+
 TEST(Adaptive, WhereNothingIsKnownAllPixelsHaveOne) {
   Adaptive black = half_noisy(0.001f, 0.009f), still = half_noisy(0, 0);
   Film film = even_film(0.005);
@@ -100,7 +125,7 @@ TEST(Adaptive, WhereNothingIsKnownAllPixelsHaveOne) {
   EXPECT_TRUE(black.counts.empty());
   EXPECT_EQ(count_of(&black, 5), 1u);
   EXPECT_EQ(count_of(nullptr, 5), 1u);
-  EXPECT_EQ(samples_of_pass({}), 1);
+  EXPECT_EQ(samples_of_pass(film, {}), 1);
 }
 
 double light_of(const RenderState& state) {
@@ -133,8 +158,8 @@ TEST(Adaptive, APassIsTheMeanOfAPixelsSamples) {
   const auto [least, most] = std::minmax_element(more.adaptive.counts.begin(), more.adaptive.counts.end());
   EXPECT_EQ(*least, 1);
   EXPECT_GE(*most, 4);
-  EXPECT_GT(samples_of_pass(more.adaptive), 1.02);
-  EXPECT_LT(samples_of_pass(more.adaptive), 3);
+  EXPECT_GT(samples_of_pass(more.film, more.adaptive), 1.02);
+  EXPECT_LT(samples_of_pass(more.film, more.adaptive), 3);
   EXPECT_LT(estimate_error(more.film).relmse_trimmed, estimate_error(even.film).relmse_trimmed);
 }
 

@@ -29,8 +29,8 @@ struct Adaptive {
 inline uint32_t count_of(const Adaptive* adaptive, uint64_t pixel) {
   return adaptive && !adaptive->counts.empty() ? adaptive->counts[pixel] : 1;
 }
-/// In the mean, of the passes that it is of.
-double samples_of_pass(const Adaptive& adaptive);
+/// In the mean, of the passes that it is of, with the part of the pass at work.
+double samples_of_pass(const Film& film, const Adaptive& adaptive);
 /// Chooses the counts anew. Does nothing while the film has fewer than two passes, or is black.
 void allot(const Film& film, Adaptive& adaptive);
 
