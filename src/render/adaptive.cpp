@@ -11,9 +11,11 @@ namespace {
 
 double count(const PixelSpread& s) { return double(s.counts[0]) + s.counts[1]; }
 
+// Sums that are full tell nothing (light of 10^19 and more).
 double variance_of(const PixelSpread& s) {
   const double n = count(s);
-  return n > 1 ? std::max(double(s.square) - sqr(double(s.sum)) / n, 0.0) / (n - 1) : 0;
+  if (!(n > 1) || !(s.square < infinity)) return 0;
+  return std::max(double(s.square) - sqr(double(s.sum)) / n, 0.0) / (n - 1);
 }
 
 // Mean of the pixels around one, without the greatest: a single firefly is not worth samples.

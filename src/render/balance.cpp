@@ -8,11 +8,14 @@ namespace {
 
 constexpr float least_step = 0.5f, most_step = 2;  // from look to look
 
-// Of so many samples, per pixel.
+// Of so many samples, per pixel. Sums that are full tell nothing (light of 10^19 and more), nor do those of squares
+// that are too small for a float.
 std::vector<double> variances_of(const std::vector<Beyond>& found, double samples) {
   std::vector<double> out;
-  for (const Beyond& b : found)
-    out.push_back((double(b.square) - double(b.sum) * double(b.sum) / samples) / (samples - 1));
+  for (const Beyond& b : found) {
+    const double square = b.square < infinity ? double(b.square) : 0;
+    out.push_back(std::max(square - sqr(double(b.sum)) / samples, 0.0) / (samples - 1));
+  }
   return out;
 }
 

@@ -58,8 +58,8 @@ bool add_if_visible(Work& work, Candidate& c, int s, int t) {
 // Radiance that a vertex is expected to scatter, never less than this share of a typical value: errors are judged
 // against it.
 float expected_radiance(const Fields& fields, const Guide& guide, float least) {
-  const float out = scatters(guide) * fields.q.cells[guide.cell].total;
-  return std::sqrt(sqr(out) + sqr(least * float(fields.q.unit)));
+  const double out = scatters(guide) * fields.q.cells[guide.cell].total;
+  return float(std::sqrt(sqr(out) + sqr(double(least) * fields.q.unit)));
 }
 
 // What a pixel's error counts for where the lens sees this vertex: errors are judged relative to the image, so the

@@ -79,6 +79,21 @@ TEST(Extreme, BrightnessIsAFactor) {
   }
 }
 
+// Squares of such radiance have no place in a float.
+TEST(Extreme, BrighterAndDarkerThanSquaresGo) {
+  for (const char* integrator : {"path", "guided-path", "guided-bdpt"}) {
+    double expected = 0;
+    for (const float factor : {1.0f, 0x1p70f, 0x1p-90f}) {
+      Scene scene = furnished();
+      scene.lights[0].radiance.value *= factor;
+      finish(scene);
+      const double sum = sum_of(image_of(scene, integrator, 64)) / factor;
+      if (factor == 1) expected = sum;
+      EXPECT_NEAR(sum, expected, 0.05 * expected) << integrator << ' ' << factor;
+    }
+  }
+}
+
 TEST(Extreme, SharpGlossAndTinyLights) {
   for (const float alpha : {1e-4f, 1e-3f, 1.0f}) {
     Scene scene = stage();

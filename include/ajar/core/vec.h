@@ -24,6 +24,7 @@ inline constexpr float infinity = std::numeric_limits<float>::infinity();
 inline constexpr float one_minus_epsilon = 0x1.fffffep-1f;
 
 inline float sqr(float x) { return x * x; }
+inline double sqr(double x) { return x * x; }  // in double: a luminance of 1e20 has a square
 inline float length2(const Vec3& v) { return glm::dot(v, v); }
 inline float max_component(const Vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
 inline float max_abs(const Vec3& v) { return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z))); }
