@@ -153,7 +153,9 @@ void write_all(const RenderArguments& a, const Scene& scene, const Accel& accel,
   if (!a.checkpoint.empty())
     writes.emplace_back([&] { save_checkpoint(a.checkpoint, checkpoint_key(run, state.film), state); });
   if (!a.save_fields.empty() && is_guided(run.options.integrator))
-    writes.emplace_back([&] { save_fields(a.save_fields, stored_fields(scene, state.learning, state.film)); });
+    writes.emplace_back([&] {
+      save_fields(a.save_fields, stored_fields(scene, state.learning, passes_drawn(state.film, state.adaptive)));
+    });
   writes.emplace_back([&] {  // last of what goes on from the state
     if (run.interrupted) show_merged(state);
     if (has_samples(state.film)) write_image(a, scene, accel, run, state);

@@ -75,6 +75,12 @@ double samples_of_pass(const Film& film, const Adaptive& adaptive) {
   return samples > 0 && pixels > 0 ? samples / pixels : 1;
 }
 
+uint32_t passes_drawn(const Film& film, const Adaptive& adaptive) {
+  uint32_t most = 0;
+  for (const PixelSpread& s : adaptive.spread) most = std::max({most, s.counts[0], s.counts[1]});
+  return std::max(film.dropped + film.passes + (film.chunks > 0), adaptive.first + 2 * most);
+}
+
 void allot(const Film& film, Adaptive& adaptive) {
   const double error = estimate_sample_error(film);
   if (adaptive.spread.empty() || !(error > 0) || !(error < infinity)) return;

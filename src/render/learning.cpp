@@ -57,8 +57,8 @@ void go_on_from(StoredFields stored, const LearnOptions& options, Learning& l, F
   l.first = film.dropped = (stored.passes + 1) / 2 * 2;
 }
 
-StoredFields stored_fields(const Scene& scene, const Learning& l, const Film& film) {
-  return {l.fields, scene_key(scene), film.dropped + film.passes + (film.chunks > 0)};
+StoredFields stored_fields(const Scene& scene, const Learning& l, uint32_t passes) {
+  return {l.fields, scene_key(scene), passes};
 }
 
 bool in_training(const Learning& l) { return l.train > 0 && is_young(l); }

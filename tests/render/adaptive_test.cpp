@@ -115,6 +115,23 @@ TEST(Adaptive, APassAtWorkCountsByWhatIsDoneOfIt) {
   EXPECT_NEAR(samples_of_pass(film, a), 3, 1e-12);
 }
 
+// Who goes on from fields that the first samples of passes taught must not draw their numbers again: those are not the
+// numbers of the passes.
+TEST(Adaptive, NumbersThatTaughtAreDrawnByMoreThanThePasses) {
+  Film film = even_film(0.005);
+  film.dropped = 4, film.passes = 8;
+  Adaptive a;
+  EXPECT_EQ(passes_drawn(film, a), 12u);
+  film.chunks = 1;
+  EXPECT_EQ(passes_drawn(film, a), 13u);
+  a.first = 4, a.passes = 8, a.spread.resize(film.pixels());
+  EXPECT_EQ(passes_drawn(film, a), 13u);
+  a.spread[7].counts[0] = 4, a.spread[7].counts[1] = 17;
+  const auto number = [&](uint32_t half) { return a.first + 2 * (a.spread[7].counts[half] - 1) + half; };  // the last
+  EXPECT_GT(passes_drawn(film, a), std::max(number(0), number(1)));
+  EXPECT_EQ(passes_drawn(film, a), 38u);
+}
+
 TEST(Adaptive, WhereNothingIsKnownAllPixelsHaveOne) {
   Adaptive black = half_noisy(0.001f, 0.009f), still = half_noisy(0, 0);
   Film film = even_film(0.005);

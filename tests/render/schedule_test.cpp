@@ -135,7 +135,7 @@ TEST(Schedule, StoredFieldsSpareTheYoungPasses) {
   const RenderOptions o = options_of("guided-bdpt", 9);
   const RenderState first = rendered(scene, accel, o);
   const File file("ajar_fields");
-  save_fields(file.path, stored_fields(scene, first.learning, first.film));
+  save_fields(file.path, stored_fields(scene, first.learning, passes_drawn(first.film, first.adaptive)));
   RenderState second = start_render(scene, o);
   go_on_from(load_fields(file.path, scene_key(scene)), o.learn, second.learning, second.film);
   expect_same_field(first.learning.fields.q, second.learning.fields.q);
@@ -153,7 +153,8 @@ TEST(Schedule, StoredFieldsSpareTheYoungPasses) {
   int passes = 0;
   render(scene, accel, o, young, [&](const RenderState&) { return ++passes < 3; });
   RenderState third = start_render(scene, o);
-  go_on_from(stored_fields(scene, young.learning, young.film), o.learn, third.learning, third.film);
+  go_on_from(stored_fields(scene, young.learning, passes_drawn(young.film, young.adaptive)), o.learn, third.learning,
+             third.film);
   render(scene, accel, o, third, always);
   EXPECT_EQ(dropped_passes(third.learning, third.film), blind_generations - 3);
 }
@@ -173,7 +174,8 @@ TEST(Schedule, FieldsGuideTheSideThatIsAskedFor) {
     EXPECT_EQ(guides(one.learning.fields.q), side == Guided::camera);
     EXPECT_EQ(guides(one.learning.fields.w), side == Guided::light);
     RenderState loaded = start_render(scene, o);
-    go_on_from(stored_fields(scene, both.learning, both.film), o.learn, loaded.learning, loaded.film);
+    go_on_from(stored_fields(scene, both.learning, passes_drawn(both.film, both.adaptive)), o.learn, loaded.learning,
+               loaded.film);
     EXPECT_EQ(guides(loaded.learning.fields.q), side == Guided::camera);
     EXPECT_EQ(guides(loaded.learning.fields.w), side == Guided::light);
   }

@@ -31,6 +31,8 @@ inline uint32_t count_of(const Adaptive* adaptive, uint64_t pixel) {
 }
 /// In the mean, of the passes that it is of, with the part of the pass at work.
 double samples_of_pass(const Film& film, const Adaptive& adaptive);
+/// Passes of one camera sample each that would have drawn all numbers which were drawn so far.
+uint32_t passes_drawn(const Film& film, const Adaptive& adaptive);
 /// Chooses the counts anew. Does nothing while the film has fewer than two passes, or is black.
 void allot(const Film& film, Adaptive& adaptive);
 

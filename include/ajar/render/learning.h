@@ -29,8 +29,8 @@ Learning start_learning(const Scene& scene, const Film& film, const LearnOptions
 /// Puts stored fields in place of those that know nothing. Passes are numbered on from those that the fields were
 /// learned from: a pass guided by what its own numbers taught would be biased. Call before the first pass.
 void go_on_from(StoredFields stored, const LearnOptions& options, Learning& learning, Film& film);
-/// The fields as they are now, with the numbers that they have seen.
-StoredFields stored_fields(const Scene& scene, const Learning& learning, const Film& film);
+/// The fields as they are now, with the numbers that they have seen: those of so many passes (passes_drawn).
+StoredFields stored_fields(const Scene& scene, const Learning& learning, uint32_t passes);
 /// Passes that were traced and dropped.
 inline uint32_t dropped_passes(const Learning& learning, const Film& film) { return film.dropped - learning.first; }
 /// Whether passes only train the fields so far (LearnOptions::train): they do not count.
