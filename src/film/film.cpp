@@ -6,6 +6,7 @@
 #include "ajar/core/parallel.h"
 #include "ajar/core/sampler.h"
 #include "ajar/film/fireflies.h"
+#include "footprint.h"
 
 namespace ajar {
 namespace {
@@ -23,18 +24,6 @@ double share_done(const Film& film) {
   size_t done = 0;
   for (uint32_t i = 0; i < film.chunks; ++i) done += tile_bounds(film, i).pixels();
   return double(done) / double(film.pixels());
-}
-
-void add_splat(Film& film, const Splat& s, int y_from, int y_to) {
-  // Pixels whose filter reaches the splat: centres within the radius.
-  const float r = film.filter.radius, x = s.raster.x - float(film.x0) - 0.5f, y = s.raster.y - float(film.y0) - 0.5f;
-  const int xa = std::max(0, int(std::ceil(x - r))), xb = std::min(film.width - 1, int(std::floor(x + r)));
-  const int ya = std::max(y_from, int(std::ceil(y - r))), yb = std::min(y_to - 1, int(std::floor(y + r)));
-  for (int py = ya; py <= yb; ++py) {
-    const float wy = eval(film.filter, y - float(py));
-    for (int px = xa; px <= xb; ++px)
-      film.splat[size_t(py) * film.width + px] += s.value * (wy * eval(film.filter, x - float(px)));
-  }
 }
 
 // From the spread of the passes, of which there are two or more.
@@ -111,7 +100,9 @@ void merge(Film& film, const std::vector<std::vector<Splat>>& chunks) {
     const float reach = film.filter.radius + 0.5f, lo = float(film.y0 + from) - reach, hi = float(film.y0 + to) + reach;
     for (const auto& chunk : chunks)
       for (const Splat& s : chunk)
-        if (s.raster.y >= lo && s.raster.y <= hi) add_splat(film, s, from, to);
+        if (s.raster.y >= lo && s.raster.y <= hi)
+          for_each_reached(film, s.raster, from, to,
+                           [&](size_t i, float wx, float wy) { film.splat[i] += s.value * (wy * wx); });
   });
 }
 

@@ -6,19 +6,18 @@
 #include <filesystem>
 #include <string_view>
 
+#include "footprint.h"
+
 namespace ajar {
 namespace {
 
 void splat(const Film& film, const Strategy& c, Pyramid::Layer& layer) {
   const double per_path = 1.0 / double(film.pixels());
-  const float r = film.filter.radius, x = c.raster.x - float(film.x0) - 0.5f, y = c.raster.y - float(film.y0) - 0.5f;
-  for (int py = std::max(0, int(std::ceil(y - r))); py <= std::min(film.height - 1, int(std::floor(y + r))); ++py)
-    for (int px = std::max(0, int(std::ceil(x - r))); px <= std::min(film.width - 1, int(std::floor(x + r))); ++px) {
-      const double w = per_path * double(eval(film.filter, x - float(px))) * double(eval(film.filter, y - float(py)));
-      const size_t i = size_t(py) * film.width + px;
-      layer.raw[i] += glm::dvec3(c.raw) * w;
-      layer.weighted[i] += glm::dvec3(c.weighted) * w;
-    }
+  for_each_reached(film, c.raster, 0, film.height, [&](size_t i, float wx, float wy) {
+    const double w = per_path * double(wx) * double(wy);
+    layer.raw[i] += glm::dvec3(c.raw) * w;
+    layer.weighted[i] += glm::dvec3(c.weighted) * w;
+  });
 }
 
 void clear_layers(const std::string& folder) {
