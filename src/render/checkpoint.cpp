@@ -58,14 +58,19 @@ void adaptive_fields(Io& io, State& adaptive) {
 }
 
 template <class Io, class State>
+void set_aside_fields(Io& io, State& image) {
+  film_fields(io, image.film), io.value(image.ledger);
+}
+
+template <class Io, class State>
 void plain_fields(Io& io, State& plain) {
   io.value(plain.taken), io.value(plain.settled), io.value(plain.passes), io.value(plain.ratio);
   io.value(plain.pace), io.value(plain.guided_error), io.value(plain.plain_error);
   io.value(plain.missed), io.value(plain.rays), io.value(plain.seen.passes), io.array(plain.seen.sum),
       io.array(plain.seen.half);
   io.value(plain.returned), io.value(plain.merged);
-  film_fields(io, plain.guided), io.value(plain.ledger), adaptive_fields(io, plain.adaptive);
-  film_fields(io, plain.with_merging), io.value(plain.merging_ledger);
+  set_aside_fields(io, plain.guided), adaptive_fields(io, plain.adaptive);
+  set_aside_fields(io, plain.with_merging);
 }
 
 template <class Io, class State>
@@ -153,11 +158,12 @@ void load_checkpoint(const std::string& path, const std::string& key, RenderStat
   r.require(state.balance.found.empty() || state.balance.found.size() == pixels);
   adaptive_fields(r, state.adaptive);
   r.require(is_sound(state.adaptive, pixels));
-  state.plain.guided = state.plain.with_merging = state.film;  // for their place and filter, which are not in the file
+  // For their place and filter, which are not in the file.
+  state.plain.guided.film = state.plain.with_merging.film = state.film;
   plain_fields(r, state.plain);
   r.require(state.plain.seen.half.size() == state.plain.seen.sum.size());
   r.require(is_sound(state.plain.adaptive, pixels));
-  for (const Film* film : {&state.plain.guided, &state.plain.with_merging})
+  for (const Film* film : {&state.plain.guided.film, &state.plain.with_merging.film})
     r.require(film->passes == 0 || is_sound(*film, pixels));
   read(r, state.learning);
   r.finish();

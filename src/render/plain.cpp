@@ -172,13 +172,19 @@ PassHalves operator-(PassHalves a, const PassHalves& b) {
   return a;
 }
 
+SetAside set_aside(const RenderState& state) { return {state.film, state.stats.ledger}; }
+
+void put_back(SetAside& image, RenderState& state) {
+  state.film = std::move(image.film), state.stats.ledger = image.ledger;
+}
+
 // Where path tracing does better than what merges, so does guided-bdpt, mostly, whose fields are there. It begins an
 // image of its own, without what merging blurred, and is looked at in turn; or goes on with the image as it is.
 void leave_out_merging(bool anew, RenderState& state) {
   state.plain = {};
   state.plain.merged = state.film.passes, state.plain.settled = !anew;
   if (!anew) return;
-  state.plain.with_merging = state.film, state.plain.merging_ledger = state.stats.ledger;
+  state.plain.with_merging = set_aside(state);
   drop_passes(state.film);
   state.stats.ledger = {};
 }
@@ -190,18 +196,17 @@ void doubt_plain(bool merges, RenderState& state) {
   Film& film = state.film;
   if (film.chunks > 0 || film.passes == plain.passes || !std::has_single_bit(film.passes)) return;
   const std::vector<uint32_t> all = spread_squares(film, square_count(film));
-  const PassHalves guided = halves_of(plain.guided, all), since = halves_of(film, all) - guided;
+  const PassHalves guided = halves_of(plain.guided.film, all), since = halves_of(film, all) - guided;
   const PlainLook look = compare_halves(guided, since);
   const double passes = since.passes;
   plain.taken = (look.plain + 2 * look.deviation) * passes + missed_by_plain(look, merges) * std::min(passes, rarest) <=
                 turned_wild;
   if (!plain.taken) {
-    film = std::move(plain.guided);
+    put_back(plain.guided, state);
     plain.returned = since.passes;
-    state.stats.ledger = plain.ledger;
     state.adaptive = std::move(plain.adaptive);
   }
-  if (!plain.taken || film.passes >= doubted * plain.passes) plain.guided = {}, plain.ledger = {}, plain.adaptive = {};
+  if (!plain.taken || film.passes >= doubted * plain.passes) plain.guided = {}, plain.adaptive = {};
 }
 
 }  // namespace
@@ -241,8 +246,8 @@ double missed_by_plain(const PlainLook& look, bool merges) {
 }
 
 void show_merged(RenderState& state) {
-  if (state.plain.with_merging.passes <= state.film.passes) return;
-  state.film = std::move(state.plain.with_merging), state.stats.ledger = state.plain.merging_ledger;
+  if (state.plain.with_merging.film.passes <= state.film.passes) return;
+  put_back(state.plain.with_merging, state);
   state.plain = {};
 }
 
@@ -262,8 +267,8 @@ void try_plain(const Job& job, const RenderOptions& options, std::vector<Scratch
   Plain& plain = state.plain;
   const bool merges = merges_still(options, plain);
   const Film& film = state.film;
-  if (film.passes >= plain.with_merging.passes) plain.with_merging = {}, plain.merging_ledger = {};
-  if (plain.guided.passes > 0) return doubt_plain(merges, state);
+  if (film.passes >= plain.with_merging.film.passes) plain.with_merging = {};
+  if (plain.guided.film.passes > 0) return doubt_plain(merges, state);
   const bool due = std::has_single_bit(film.passes) && film.passes >= first_look && film.passes <= last_look;
   if (plain.settled || film.chunks > 0 || !due || plain.passes == film.passes) return;
   const uint32_t all = square_count(film), count = std::clamp(all / 16, least_squares, most_squares);
@@ -287,8 +292,7 @@ void try_plain(const Job& job, const RenderOptions& options, std::vector<Scratch
   decide(look.plain + plain.missed / passes, look.deviation, guided, passes, film.passes, plain);
   if (plain.taken && merges) return leave_out_merging(!is_over(options, state.stats, late), state);
   if (plain.settled) plain.seen = {};
-  if (plain.taken && film.splats)
-    plain.guided = film, plain.ledger = state.stats.ledger, plain.adaptive = state.adaptive;
+  if (plain.taken && film.splats) plain.guided = set_aside(state), plain.adaptive = state.adaptive;
 }
 
 }  // namespace ajar

@@ -370,7 +370,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
     job.walk.first_seen = guided_first;
   }
   const bool leaving_out = may_leave_out(options);
-  if (!leaving_out) state.plain.with_merging = {}, state.plain.merging_ledger = {};
+  if (!leaving_out) state.plain.with_merging = {};
   double wall0 = 0, cpu0 = 0;
   const auto start_clocks = [&] {
     wall0 = wall_seconds() - stats.seconds;

@@ -168,8 +168,8 @@ void add_caustic(Film& film) {
 
 void take_over(RenderState& state) {
   state.plain.taken = state.plain.settled = true;
-  state.plain.passes = state.film.passes, state.plain.guided = state.film;
-  state.plain.ledger = state.stats.ledger, state.plain.adaptive = state.adaptive;
+  state.plain.passes = state.film.passes, state.plain.guided = {state.film, state.stats.ledger};
+  state.plain.adaptive = state.adaptive;
 }
 
 void expect_same_image(const RenderState& a, const RenderState& b) {
@@ -207,7 +207,7 @@ TEST(Plain, GivesBackWhatItDoesNotSee) {
   const RenderState straight = resumed(scene, accel, sparing("guided-bdpt", 12), state);
   EXPECT_EQ(straight.plain.returned, 4u);
   EXPECT_FALSE(straight.plain.taken);
-  EXPECT_EQ(straight.plain.guided.passes, 0u);
+  EXPECT_EQ(straight.plain.guided.film.passes, 0u);
   expect_same_image(straight, guided);
   RenderOptions o = sparing("guided-bdpt", 6);
   render(scene, accel, o, state, {});
@@ -228,7 +228,7 @@ TEST(Plain, GivesBackWhatItDidNotSeeAtFirst) {
   take_over(doubted);
   doubted = resumed(scene, accel, sparing("guided-bdpt", 12), doubted);
   ASSERT_TRUE(doubted.plain.taken);
-  add_caustic(doubted.plain.guided);
+  add_caustic(doubted.plain.guided.film);
   render(scene, accel, o, doubted, {});
   EXPECT_EQ(doubted.plain.returned, 12u);
   expect_same_image(doubted, guided);
@@ -335,7 +335,7 @@ TEST(Plain, StopsShowWhatMergedUntilThereIsMore) {
       return s.plain.merged == 0 || s.film.passes < more;
     });
     const RenderState stopped = state;
-    if (more == merged - 1) state.plain.taken = true, state.plain.guided = state.film;
+    if (more == merged - 1) state.plain.taken = true, state.plain.guided.film = state.film;
     show_merged(state);
     EXPECT_EQ(state.plain.merged > 0, more >= merged);
     EXPECT_EQ(state.film.passes, more < merged ? merged : more);

@@ -34,6 +34,12 @@ PlainLook compare_halves(const PassHalves& guided, const PassHalves& plain);
 /// squares too bright, which is not path tracing's fault.
 double missed_by_plain(const PlainLook& look, bool merges);
 
+/// An image that is set aside, with what was counted of it.
+struct SetAside {
+  Film film;  ///< empty: there is none
+  Ledger ledger;
+};
+
 /// Path tracing beside a guided integrator: squares spread over the film, in as much time as the guided passes of their
 /// pixels took. (L2)
 struct Plain {
@@ -47,13 +53,11 @@ struct Plain {
   double missed = 0;        ///< the greatest PlainLook::missed of a sample, halved from look to look
   uint64_t rays = 0;        ///< that it took
   PassHalves seen;
-  Film guided;            ///< the image when path tracing took over, while it may still be given back; else empty
-  Ledger ledger;          ///< of that image
+  SetAside guided;        ///< the image when path tracing took over, while it may still be given back
   Adaptive adaptive;      ///< of that image, too
   uint32_t returned = 0;  ///< passes of path tracing that were dropped when it was
   uint32_t merged = 0;    ///< passes after which merging was left out; 0: it was not
-  Film with_merging;      ///< the image with it, while the one without has fewer passes; else empty
-  Ledger merging_ledger;  ///< of that image
+  SetAside with_merging;  ///< the image with it, while the one without has fewer passes
 };
 
 }  // namespace ajar
