@@ -5,8 +5,8 @@
 namespace ajar {
 namespace {
 
-// Shares of the choice that go by flux, and that are even, whatever the fields say.
-constexpr double by_flux = 0.05, evenly = 0.2;
+// Share of the choice that is even.
+constexpr double evenly = 0.2;
 
 struct Totals {
   double worth = 0, flux = 0, places = 0;

@@ -197,7 +197,7 @@ void join_next_event(Work& work, float worth) {
 }
 
 // Share of the pixel's light that joins could bring the vertex: all that is not next-event estimation's.
-float share_of_joins(const Fields& fields, const Guide& guide, float worth) {
+float left_to_joins(const Fields& fields, const Guide& guide, float worth) {
   const FieldCell& cell = fields.q.cells[guide.cell];
   return worth * std::max(cell.total - cell.direct, 0.0f);
 }
@@ -210,7 +210,7 @@ Joiner joiner_of(const Job& job, const Subpath& camera, float worth) {
   j.before = count_before(job.walk, camera);
   j.joins = (v.seen ? seen_joins : inner_joins) * job.effort;
   if (!v.seen || !(worth > 0) || v.guide.cell == none) return j;
-  const float share = std::min(share_of_joins(*job.walk.fields, v.guide, worth), 1.0f);
+  const float share = std::min(left_to_joins(*job.walk.fields, v.guide, worth), 1.0f);
   j.blocks = uint32_t(job.effort * most_blocks * std::sqrt(share) + 0.5f);  // (J9)
   return j;
 }

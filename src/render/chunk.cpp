@@ -116,9 +116,7 @@ void trace_light_halves(const Job& job, Film& film, uint32_t chunk, Scratch& scr
   halves.splat_counts = float(share_of(job, film));
   if (count > 0) halves.splat_counts *= float(double(count) / light_halves(count, job.light_rate));
   if (!job.light_half) return;
-  // W learns from as many subpaths as Q does.
-  const uint32_t usual = job.learning ? recorded_one_in(*job.learning, film) : 1;
-  const uint32_t recorded = std::max(uint32_t(float(usual) * job.light_rate), 1u);
+  const uint32_t recorded = job.learning ? light_recorded_one_in(*job.learning, film, job.light_rate) : 1;
   const size_t step = size_t(std::max(1 / job.light_rate, 1.0f)), each = size_t(std::max(job.light_rate, 1.0f));
   for (size_t i = 0; i < count; i += step)
     for (size_t k = 0; k < each; ++k) {

@@ -195,7 +195,7 @@ inline double gain(StrategyCost& cost, const Rgb& pixel) {
 inline void gain(Scratch& scratch, int s, int t, const Rgb& pixel) { gain(scratch.ledger->at(s, t), pixel); }
 
 /// Whether light came to the subpath's last vertex by way of a delta event.
-inline bool is_caustic(const Subpath& light) {
+inline bool came_by_delta(const Subpath& light) {
   for (int i = 1; i + 1 < light.n; ++i)
     if (light[i].delta) return true;
   return false;
@@ -211,7 +211,7 @@ inline void gain_splat(const Job& job, Scratch& scratch) {
   const double pixels = double(c.crop_width) * c.crop_height;
   const Rgb pixel = inside ? splat.value * float(1 / pixels) : Rgb(0);
   const double energy = gain(scratch.ledger->at(scratch.light.n, 1), pixel);
-  if (is_caustic(scratch.light)) scratch.ledger->caustics += energy;
+  if (came_by_delta(scratch.light)) scratch.ledger->caustics += energy;
 }
 
 /// Law 6: only finite, non-negative values may go on; others are counted.

@@ -79,6 +79,10 @@ uint32_t recorded_one_in(const Learning& l, const Film& film) {
   return l.train > 0 || l.fields.generation < blind_generations ? 1 : young_shares(film.pixels()).recorded;
 }
 
+uint32_t light_recorded_one_in(const Learning& l, const Film& film, float rate) {
+  return std::max(uint32_t(float(recorded_one_in(l, film)) * rate), 1u);
+}
+
 bool is_recorded(const Learning& learning, uint64_t pixel, uint32_t pass, uint32_t one_in) {
   return !is_frozen(learning) && hash(pixel, pass) % one_in == 0;
 }

@@ -45,8 +45,8 @@ Sampler numbers_of(const Job& job, uint64_t stream, uint32_t pass, uint32_t path
   return make_sampler(job.sampler, job.seed, Side::light, stream, point);
 }
 
-// As camera subpaths see it, which know no fields.
-double share_of_next_event(const Scene& scene, const Subpath& light, const Walk& walk) {
+// Share of next-event estimation (direct_share) as camera subpaths see it, which know no fields.
+double unguided_share(const Scene& scene, const Subpath& light, const Walk& walk) {
   Vertex x = light[1];
   x.guide.fields = nullptr, x.guide.cell = none;
   return direct_share(scene, x, light[0].point, -walk.d, x.distance2,
@@ -65,7 +65,7 @@ void trace_lights(const Job& job, Sampler sampler, Scratch& scratch, Part& out) 
       if (light.n > 1 && !scatter(job.walk, sampler, light, walk)) break;
       ++scratch.counters.light_rays;
       if (!step(*job.scene, *job.accel, job.walk, light, walk, surface)) break;
-      if (light.n == 2) walk.first_share = share_of_next_event(*job.scene, light, walk);
+      if (light.n == 2) walk.first_share = unguided_share(*job.scene, light, walk);
       join_lens(job, sampler, walk.first_share, scratch, out.splats);
       out.may_light.push_back(can_light(*job.scene, surface, light[light.n - 1].guide));
     }
@@ -93,16 +93,14 @@ std::vector<Part> trace_parts(const Job& job, uint64_t stream, uint32_t pass, st
   return parts;
 }
 
-struct Worth {
-  double image = 0;  // what a light is expected to bring to the image, beyond what the lens sees of it
-  double flux = 0;
-};
-Worth worth_of(const Vertex& v) {
-  return {double(promise(v.guide, v.beta).beyond), double(std::max(luminance(v.beta), 0.0f))};
+double flux_at(const LightStore& store, const LightStore::Place& at) {
+  return double(std::max(luminance(store.vertex(at).beta), 0.0f));
 }
 
-// Share of the choice among lights that goes by flux, whatever the field says.
-constexpr double by_flux = 0.05;
+// What a light is taken to bring to the image.
+double value_of(const Vpls& vpls, const LightStore& store, const LightStore::Place& at) {
+  return double(at.worth) + vpls.per_flux * flux_at(store, at);
+}
 
 // Keeps some lights of a part. Which depends on each light alone, and on a number of its own: as fields change from
 // frame to frame, most stay.
@@ -111,8 +109,7 @@ void select_lights(const Job& job, uint32_t pass, uint32_t number, LightStore& s
   const uint64_t key = hash(hash(job.seed, 0x6b657074), hash(pass, number));
   std::vector<LightStore::Place> kept;
   for (LightStore::Place& at : store.places) {
-    const Worth worth = worth_of(store.vertex(at));
-    const double chance = std::min((worth.image + v.per_flux * worth.flux) / v.least, 1.0);  // (I2)
+    const double chance = std::min(value_of(v, store, at) / v.least, 1.0);  // (I2)
     if (!(double(hash(key, uint64_t(at.path) << 32 | uint32_t(at.s)) >> 11) * 0x1p-53 < chance)) continue;
     at.counts = float(1 / chance);
     kept.push_back(at);
@@ -177,16 +174,14 @@ double density_of_lights(const Job& job, const Vec3& p, const Vec3& ng, const Ve
 
 void measure_lights(const Job& job, std::vector<Scratch>& scratches, Vpls& vpls) {
   constexpr uint64_t stream = 0x70696c6f74;
-  std::vector<Worth> found;
-  Worth all;
-  for (const Part& part : trace_parts(job, stream, 0, scratches))
-    for (const LightStore::Place& at : part.store.places) {
-      found.push_back(worth_of(part.store.vertex(at)));
-      all.image += found.back().image, all.flux += found.back().flux;
-    }
-  vpls.per_flux = all.flux > 0 ? by_flux * all.image / all.flux : 0;
+  const std::vector<Part> parts = trace_parts(job, stream, 0, scratches);
+  double worth = 0, flux = 0;
+  for (const Part& part : parts)
+    for (const LightStore::Place& at : part.store.places) worth += double(at.worth), flux += flux_at(part.store, at);
+  vpls.per_flux = flux > 0 ? by_flux * worth / flux : 0;
   std::vector<double> values;
-  for (const Worth& w : found) values.push_back(w.image + vpls.per_flux * w.flux);
+  for (const Part& part : parts)
+    for (const LightStore::Place& at : part.store.places) values.push_back(value_of(vpls, part.store, at));
   vpls.least = find_threshold(std::move(values), vpls.most);
 }
 

@@ -6,6 +6,9 @@
 
 namespace ajar {
 
+/// Share of a choice among light vertices that goes by flux, whatever the fields say.
+inline constexpr double by_flux = 0.05;
+
 /// The least value that is sure to be kept, so that `count` are in the mean, if each value is with the probability
 /// value / result, at most 1; 0 to keep all.
 double find_threshold(std::vector<double> values, double count);

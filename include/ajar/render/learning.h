@@ -43,6 +43,9 @@ uint32_t traced_one_in(const Learning& learning, const Film& film);
 /// One path in so many is recorded in the pass at hand: how much young fields need is the scene's affair, not that of
 /// the number of pixels.
 uint32_t recorded_one_in(const Learning& learning, const Film& film);
+/// The same of light subpaths, of which there are `rate` for each pixel: about as many of them are recorded as of the
+/// others, where there are as many.
+uint32_t light_recorded_one_in(const Learning& learning, const Film& film, float rate);
 /// Whether the subpaths of this pixel are recorded in this pass, one in so many.
 bool is_recorded(const Learning& learning, uint64_t pixel, uint32_t pass, uint32_t one_in);
 /// Call after every finished pass. Drops the blind passes from the film when the time has come.
