@@ -139,10 +139,9 @@ bool can_light(const Scene& scene, const Surface& surface, const Guide& y);
 /// Lights per area at a point of a surface, on the side of direction w: of all that are kept, as far as fields know. A
 /// function of the place, whatever the pass's lights are.
 double density_of_lights(const Job& job, const Vec3& p, const Vec3& ng, const Vec3& w);
-/// Finds out from light subpaths that are in no image how much a light must bring to be kept.
-void measure_lights(const Job&, std::vector<Scratch>&, Vpls&);
-/// Traces the light subpaths of a pass and keeps its lights.
-void place_vpls(const Job&, uint32_t pass, std::vector<Scratch>&, Vpls&);
+/// Has the lights be those of the film's pass at hand: traces its light subpaths, and before the first ones others,
+/// which tell how much a light must bring to be kept.
+void place_vpls(const Job&, const Film&, std::vector<Scratch>&, Vpls&);
 /// The light subpath of one sample, put into the chunk's store and among what is merged. trace_bdpt is the second half,
 /// or trace_photon, which joins nothing.
 void trace_light_half(const Job&, Sample&, Scratch&);
@@ -154,8 +153,8 @@ Job plainly(Job job);
 /// Whether the next pass merges: not where the radius is 0, nor once that was left out, unless nothing may be.
 bool merges_still(const RenderOptions& options, const Plain& plain);
 /// After 4, 8, 16 ... 64 passes of a guided integrator: whether path tracing takes over, in RenderState::plain (L2);
-/// after 8, 16, 32 ..., where it did: whether it gives the render back, which then is as it was.
-/// Scratches' counters are left empty.
+/// after 8, 16, 32 ..., where it did: whether it gives the render back, which then is as it was. Does nothing where
+/// nothing may be left out, or fields know too little. job: of the render. Scratches' counters are left empty.
 void try_plain(const Job& job, const RenderOptions& options, std::vector<Scratch>& scratches, RenderState& state);
 
 /// Beyond the first vertex at which a camera subpath is merged, it is merged with one light subpath in so many: those

@@ -93,6 +93,7 @@ std::vector<Part> trace_parts(const Job& job, uint64_t stream, uint32_t pass, st
   return parts;
 }
 
+// What arrives there, whatever is made of it.
 double flux_at(const LightStore& store, const LightStore::Place& at) {
   return double(std::max(luminance(store.vertex(at).beta), 0.0f));
 }
@@ -130,6 +131,47 @@ void put_in_order(const Scene& scene, LightStore& store) {
 double most_density(const Job& job, const Vertex& v) {
   const double lit = density_of_lights(job, v.p, v.ng, v.guide.wo);
   return v.guide.bsdf.opaque ? lit : std::max(lit, density_of_lights(job, v.p, v.ng, -v.guide.wo));
+}
+
+// Finds out from light subpaths that are in no image how much a light must bring to be kept.
+void measure_lights(const Job& job, std::vector<Scratch>& scratches, Vpls& vpls) {
+  constexpr uint64_t stream = 0x70696c6f74;
+  const std::vector<Part> parts = trace_parts(job, stream, 0, scratches);
+  double worth = 0, flux = 0;
+  for (const Part& part : parts)
+    for (const LightStore::Place& at : part.store.places) worth += double(at.worth), flux += flux_at(part.store, at);
+  vpls.per_flux = flux > 0 ? by_flux * worth / flux : 0;
+  std::vector<double> values;
+  for (const Part& part : parts)
+    for (const LightStore::Place& at : part.store.places) values.push_back(value_of(vpls, part.store, at));
+  vpls.least = find_threshold(std::move(values), vpls.most);
+}
+
+// Traces the light subpaths of a pass and keeps its lights.
+void trace_vpls(const Job& job, uint32_t pass, std::vector<Scratch>& scratches, Vpls& vpls) {
+  constexpr uint64_t stream = 0x76706c;
+  std::vector<Part> parts = trace_parts(job, stream, pass, scratches);
+  clear(vpls.store);
+  for (std::vector<Splat>& list : vpls.splats) list.clear();
+  for (uint32_t i = 0; i < parts.size(); ++i) {
+    if (vpls.least > 0) select_lights(job, pass, i, parts[i].store);
+    append(vpls.store, parts[i].store);
+    std::vector<Splat>& list = vpls.splats[i * vpls.splats.size() / parts.size()];
+    list.insert(list.end(), parts[i].splats.begin(), parts[i].splats.end());
+  }
+  put_in_order(*job.scene, vpls.store);
+  std::vector<float> near;
+  for (const LightStore::Place& at : vpls.store.places) {
+    // No walk shares what is only joined.
+    const auto per_light = [&] { return inv_pi / std::max(most_density(job, vpls.store.vertex(at)), 1e-30); };
+    near.push_back(at.only_joined ? 0 : float(per_light()));
+  }
+  finish(vpls.store, near);
+}
+
+// What was traced does not count: it is in no image, or was counted before.
+void forget_counts(std::vector<Scratch>& scratches) {
+  for (Scratch& s : scratches) s.counters = {}, s.rejected = 0;
 }
 
 }  // namespace
@@ -172,38 +214,19 @@ double density_of_lights(const Job& job, const Vec3& p, const Vec3& ng, const Ve
   return std::min(traced, arrives * std::max(brings, 0.0) / v.least);
 }
 
-void measure_lights(const Job& job, std::vector<Scratch>& scratches, Vpls& vpls) {
-  constexpr uint64_t stream = 0x70696c6f74;
-  const std::vector<Part> parts = trace_parts(job, stream, 0, scratches);
-  double worth = 0, flux = 0;
-  for (const Part& part : parts)
-    for (const LightStore::Place& at : part.store.places) worth += double(at.worth), flux += flux_at(part.store, at);
-  vpls.per_flux = flux > 0 ? by_flux * worth / flux : 0;
-  std::vector<double> values;
-  for (const Part& part : parts)
-    for (const LightStore::Place& at : part.store.places) values.push_back(value_of(vpls, part.store, at));
-  vpls.least = find_threshold(std::move(values), vpls.most);
-}
-
-void place_vpls(const Job& job, uint32_t pass, std::vector<Scratch>& scratches, Vpls& vpls) {
-  constexpr uint64_t stream = 0x76706c;
-  std::vector<Part> parts = trace_parts(job, stream, pass, scratches);
-  clear(vpls.store);
-  for (std::vector<Splat>& list : vpls.splats) list.clear();
-  for (uint32_t i = 0; i < parts.size(); ++i) {
-    if (vpls.least > 0) select_lights(job, pass, i, parts[i].store);
-    append(vpls.store, parts[i].store);
-    std::vector<Splat>& list = vpls.splats[i * vpls.splats.size() / parts.size()];
-    list.insert(list.end(), parts[i].splats.begin(), parts[i].splats.end());
+void place_vpls(const Job& job, const Film& film, std::vector<Scratch>& scratches, Vpls& vpls) {
+  vpls.camera = job.walk;
+  vpls.camera.fields = nullptr;
+  const uint32_t pass = film.dropped + film.passes;
+  if (vpls.pass == Vpls{}.pass && job.guided) {
+    measure_lights(job, scratches, vpls);
+    forget_counts(scratches);
   }
-  put_in_order(*job.scene, vpls.store);
-  std::vector<float> near;
-  for (const LightStore::Place& at : vpls.store.places) {
-    // No walk shares what is only joined.
-    const auto per_light = [&] { return inv_pi / std::max(most_density(job, vpls.store.vertex(at)), 1e-30); };
-    near.push_back(at.only_joined ? 0 : float(per_light()));
+  if (vpls.pass != pass) {
+    trace_vpls(job, pass, scratches, vpls);
+    if (film.chunks > 0) forget_counts(scratches);  // a pass that is gone on with
   }
-  finish(vpls.store, near);
+  vpls.pass = pass;
 }
 
 }  // namespace ajar

@@ -264,6 +264,7 @@ bool merges_still(const RenderOptions& options, const Plain& plain) {
 }
 
 void try_plain(const Job& job, const RenderOptions& options, std::vector<Scratch>& scratches, RenderState& state) {
+  if (!may_leave_out(options) || state.learning.fields.generation < blind_generations) return;
   Plain& plain = state.plain;
   const bool merges = merges_still(options, plain);
   const Film& film = state.film;
@@ -276,7 +277,6 @@ void try_plain(const Job& job, const RenderOptions& options, std::vector<Scratch
   if (squares.empty()) return;
   Job without = plainly(job);
   without.seed = hash(job.seed, 0x91a1);  // what one looks at is in no image
-  without.adaptive = nullptr;
   trace_to(film.passes, without, film, squares, scratches, plain);
   const Counters& n = state.stats.counters;
   const double cost =

@@ -1,0 +1,16 @@
+// Enters: the clocks of the wall and of this process.
+// Leaves: sums of the time that was spent on something.
+#pragma once
+
+namespace ajar {
+
+struct Stopwatch {
+  Stopwatch();  ///< starts
+  /// Adds the seconds since it was started, or since they were last added.
+  void add_to(double& seconds, double& cpu_seconds);
+
+ private:
+  double wall_, cpu_;
+};
+
+}  // namespace ajar

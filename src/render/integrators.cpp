@@ -1,0 +1,75 @@
+#include "integrators.h"
+
+#include <fmt/format.h>
+
+#include "ajar/core/error.h"
+
+namespace ajar {
+namespace {
+
+constexpr Integrator integrators[] = {{"path", trace_path, false},
+                                      {"bdpt", trace_bdpt, true},
+                                      {"light", trace_light, true},
+                                      {"guided-path", trace_bdpt, false, true},
+                                      {"guided-bdpt", trace_bdpt, true, true, trace_light_half},
+                                      {"vcm", trace_bdpt, true, false, trace_light_half, true},
+                                      {"guided-vcm", trace_bdpt, true, true, trace_light_half, true},
+                                      {"photon", trace_photon, false, false, trace_light_half, true},
+                                      {"vpl", trace_vpl, true, true, trace_light_half, false, true},
+                                      {"plain-vpl", trace_vpl, true, false, nullptr, false, true}};
+
+// Where no light vertices are joined, which bring what a cosine lobe finds badly: strata that could halve its variance
+// guide (G14).
+constexpr float alone_contrast = 2;
+
+}  // namespace
+
+const Integrator& find_integrator(const std::string& name) {
+  for (const Integrator& i : integrators)
+    if (name == i.name) return i;
+  throw Error(fmt::format("--integrator {}: unknown; known are {}", name, fmt::join(integrator_names(), ", ")));
+}
+
+std::vector<std::string> integrator_names() {
+  std::vector<std::string> names;
+  for (const Integrator& i : integrators) names.emplace_back(i.name);
+  return names;
+}
+
+bool is_guided(const std::string& integrator) { return find_integrator(integrator).guided; }
+
+bool may_leave_out(const RenderOptions& o) {
+  const Integrator& integrator = find_integrator(o.integrator);
+  const LearnOptions usual;
+  const bool as_usual = o.learn.train == 0 && o.learn.guided == usual.guided && o.learn.rule == usual.rule &&
+                        o.learn.structure == usual.structure && o.learn.forget == usual.forget;
+  return o.leaves_out && integrator.guided && !integrator.vpls && !o.techniques && as_usual;
+}
+
+bool learns(const RenderOptions& options) { return is_guided(options.integrator) || options.learn_lights; }
+
+bool is_merging(const std::string& integrator) { return find_integrator(integrator).merges; }
+
+bool has_strategies(const std::string& integrator) {
+  const Trace trace = find_integrator(integrator).trace;
+  return trace != trace_path && trace != trace_light;
+}
+
+bool weighs_strategies(const std::string& integrator) {
+  const Trace trace = find_integrator(integrator).trace;
+  return trace != trace_light && trace != trace_photon;
+}
+
+LearnOptions learn_options(const RenderOptions& options) {
+  LearnOptions o = options.learn;
+  const Integrator& integrator = find_integrator(options.integrator);
+  if (!integrator.guided)
+    o.guided = Guided::neither;
+  else if (!integrator.splats)
+    o.guided = Guided::camera, o.least_contrast = std::min(o.least_contrast, alone_contrast);
+  else if (integrator.vpls)
+    o.guided = Guided::light;  // walks are short, and the price of a guide is not
+  return o;
+}
+
+}  // namespace ajar

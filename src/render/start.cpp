@@ -1,0 +1,86 @@
+#include "start.h"
+
+#include <fmt/format.h>
+
+#include "ajar/core/error.h"
+#include "ajar/film/fireflies.h"
+#include "integrators.h"
+
+namespace ajar {
+namespace {
+
+// Passes that teach fields before light vertices are placed through them.
+constexpr uint32_t vpl_training = 8;
+
+// What joins of a guided vertex count for in the weights: about as many are made of each, where it matters (J3).
+constexpr double guided_joins = 2;
+// What next-event estimation counts for where the lens sees its vertex: several rays that lie evenly. (J7)
+constexpr double guided_first = 2;
+
+}  // namespace
+
+RenderState start_render(const Scene& scene, const RenderOptions& options) {
+  RenderState state;
+  const Integrator& integrator = find_integrator(options.integrator);
+  state.film = make_film(scene.camera, scene.filter, integrator.splats);
+  if (options.limit_fireflies) limit_fireflies(state.film);
+  state.pyramid.kept = options.techniques;
+  if (!learns(options)) return state;
+  LearnOptions learn = options.learn;
+  if (integrator.vpls && learn.train == 0) learn.train = vpl_training;
+  state.learning = start_learning(scene, state.film, learn);
+  return state;
+}
+
+void check_state(const Scene& scene, const RenderOptions& options, const RenderState& state) {
+  const Integrator& integrator = find_integrator(options.integrator);
+  const Camera& c = scene.camera;
+  const Film& f = state.film;
+  if (f.width != c.crop_width || f.height != c.crop_height || f.x0 != c.crop_x || f.y0 != c.crop_y)
+    throw Error(fmt::format(
+        "render: the film is of {}x{} pixels from {},{} on, the camera's are {}x{} from {},{} on; start_render makes a "
+        "state for each size",
+        f.width, f.height, f.x0, f.y0, c.crop_width, c.crop_height, c.crop_x, c.crop_y));
+  if (f.splats != integrator.splats)
+    throw Error(fmt::format(
+        "render: the film takes {} light subpaths, and {} {}; start_render makes a state for each integrator",
+        f.splats ? "what comes by" : "nothing of", options.integrator,
+        integrator.splats ? "brings it by them" : "brings none"));
+  if (learns(options) && state.learning.fields.starts.cuts.empty())
+    throw Error(fmt::format("render: {} learns, and the state has no fields; start_render makes one with these options",
+                            options.integrator));
+  if (!options.next_event && (integrator.splats || integrator.light_half))
+    throw Error(
+        fmt::format("render: {} needs next-event estimation; leave next_event true, or take path or guided-path",
+                    options.integrator));
+}
+
+Job make_job(const Scene& scene, const Accel& accel, const RenderOptions& options, RenderState& state) {
+  const Integrator& integrator = find_integrator(options.integrator);
+  Job job;
+  job.scene = &scene;
+  job.accel = &accel;
+  job.walk.max_edges = options.max_depth < 0 ? deepest : std::min(options.max_depth, deepest);
+  job.walk.roulette_from = options.roulette_depth;
+  job.walk.heuristic = options.heuristic;
+  job.sampler = options.sampler;
+  job.seed = options.seed;
+  job.techniques = options.techniques;
+  job.next_event = options.next_event;
+  job.trace = integrator.trace, job.light_half = integrator.light_half;
+  job.merges_alone = integrator.trace == trace_photon;
+  if (job.merges_alone) job.final_gather = options.final_gather;
+  if (learns(options)) {
+    job.learning = &state.learning, job.training = &state.learning.training;
+    job.walk.fields = &state.learning.fields;
+  }
+  if (integrator.guided) {
+    job.guided = true;
+    job.walk.inner_share = integrator.splats ? guided_joins : 0;
+    job.walk.seen_share = job.walk.inner_share;  // more where they choose among many, see plan_pass
+    job.walk.first_seen = guided_first;
+  }
+  return job;
+}
+
+}  // namespace ajar
