@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <numeric>
 
 #include "ajar/core/parallel.h"
 #include "ajar/render/render.h"
@@ -14,11 +13,7 @@ namespace {
 
 constexpr uint32_t first_look = 4, last_look = 64;  // passes
 constexpr uint32_t least_squares = 32, most_squares = 128;
-constexpr uint32_t square = plain_side * plain_side;  // pixels
-constexpr double exposed = 0.2;                       // mean luminance of the lit image as it would be looked at
-constexpr double dark = 0.01;                         // of relMSE
-constexpr double least_miss = 0.1;                    // of a square's light
-constexpr double fastest = 16;                        // of path tracing: passes for one of the guided integrator
+constexpr double fastest = 16;  // of path tracing: passes for one of the guided integrator
 // Below 1 - young / passes of the guided integrator's error after equal time path tracing takes over: what guides errs
 // less and less per pass, as fields learn.
 constexpr double young = 3;
@@ -77,13 +72,13 @@ void trace_to(uint32_t passes, const Job& job, const Film& film, const std::vect
     scratches[i].splats = &none, scratches[i].strategies = nullptr;
     scratches[i].ledger = &ledgers[i];
   }
-  plain.seen.sum.resize(squares.size() * square), plain.seen.half.resize(squares.size() * square);
+  plain.seen.sum.resize(squares.size() * plain_pixels), plain.seen.half.resize(squares.size() * plain_pixels);
   for (at.passes = plain.seen.passes; at.passes < passes; ++at.passes)
     parallel_for(uint32_t(squares.size()), [&](uint32_t i) {
-      for (uint32_t k = 0; k < square; ++k) {
+      for (uint32_t k = 0; k < plain_pixels; ++k) {
         const Rgb value = trace_alone(job, at, pixel_of(film, squares[i], k), scratches[thread_slot()]);
-        plain.seen.sum[i * square + k] += value;
-        if (at.passes % 2 == 0) plain.seen.half[i * square + k] += value;
+        plain.seen.sum[i * plain_pixels + k] += value;
+        if (at.passes % 2 == 0) plain.seen.half[i * plain_pixels + k] += value;
       }
     });
   plain.seen.passes = at.passes;
@@ -97,60 +92,12 @@ PassHalves halves_of(const Film& film, const std::vector<uint32_t>& squares) {
   PassHalves out;
   out.passes = film.passes;
   for (const uint32_t first : squares)
-    for (uint32_t k = 0; k < square; ++k) {
+    for (uint32_t k = 0; k < plain_pixels; ++k) {
       const size_t i = pixel_of(film, first, k);
       out.sum.push_back(film.camera_sum[i] + (film.splats ? film.splat_sum[i] : glm::dvec3(0)));
       out.half.push_back(film.half_sum[i]);
     }
   return out;
-}
-
-// One half of the passes less the other: what the sum is off by, in expectation.
-glm::dvec3 difference(const PassHalves& h, size_t pixel) { return 2.0 * h.half[pixel] - h.sum[pixel]; }
-
-glm::dvec3 squared(const glm::dvec3& x) { return x * x; }
-
-struct Square {
-  glm::dvec3 radiance{0};
-  double mean = 0, variance = 0;  // of its luminance
-};
-
-Square square_of(const PassHalves& h, size_t first) {
-  const double samples = double(h.passes) * square;
-  Square s;
-  for (size_t i = first; i < first + square; ++i) {
-    s.radiance += h.sum[i] / samples;
-    s.variance += sqr(luminance(difference(h, i)) / samples);
-  }
-  s.mean = luminance(s.radiance);
-  return s;
-}
-
-struct Mean {
-  double value = 0, deviation = 0;  // standard deviation of the mean
-};
-
-Mean mean_of(const std::vector<double>& x) {
-  const double n = double(x.size()), mean = std::accumulate(x.begin(), x.end(), 0.0) / n;
-  const double square_sum = std::accumulate(x.begin(), x.end(), 0.0, [](double a, double e) { return a + sqr(e); });
-  return {mean, std::sqrt(std::max(square_sum / n - sqr(mean), 0.0) / n)};
-}
-
-// Scale with which to look at these squares. What is whiter than white counts as white: a lamp in view
-// must not make all else dark.
-double exposure(const std::vector<Square>& squares) {
-  std::vector<double> luminances;
-  for (const Square& s : squares)
-    if (s.mean > 0) luminances.push_back(s.mean);
-  std::sort(luminances.begin(), luminances.end());
-  const double wanted = exposed * double(luminances.size());
-  double rest = std::accumulate(luminances.begin(), luminances.end(), 0.0);
-  for (size_t k = luminances.size(); k > 0; --k) {  // this many are not white
-    const double scale = (wanted - double(luminances.size() - k)) / rest;
-    if (scale * luminances[k - 1] <= 1) return scale;
-    rest -= luminances[k - 1];
-  }
-  return 0;
 }
 
 // From path tracing's error, its deviation, and the guided integrator's. A single firefly may be all that there is to
@@ -210,40 +157,6 @@ void doubt_plain(bool merges, RenderState& state) {
 }
 
 }  // namespace
-
-PlainLook compare_halves(const PassHalves& guided, const PassHalves& plain) {
-  PlainLook out;
-  const double pixels = double(guided.sum.size()), n = guided.passes;
-  std::vector<Square> squares;
-  for (size_t first = 0; first < guided.sum.size(); first += square) squares.push_back(square_of(guided, first));
-  const double scale = exposure(squares);
-  if (!(scale > 0) || !(scale < infinity)) return out;
-  std::vector<double> errors[2], biases;
-  for (size_t first = 0; first < guided.sum.size(); first += square) {
-    const Square &a = squares[first / square], b = square_of(plain, first);
-    const double level = scale * a.mean;
-    // A pixel counts half, so that fireflies hardly excuse themselves.
-    for (size_t i = first; i < first + square; ++i) {
-      const glm::dvec3 of = squared(0.5 * scale * (a.radiance + guided.sum[i] / n)) + dark;
-      errors[0].push_back(mean(squared(scale * difference(guided, i) / n) / of));
-      errors[1].push_back(mean(squared(scale * difference(plain, i) / double(plain.passes)) / of));
-    }
-    const double off = a.mean - b.mean, variance = a.variance + b.variance;
-    biases.push_back(sqr(scale) * (sqr(off) - variance) / (sqr(level) + dark));
-    // It came in no sample of the square, or in few: so rare it is.
-    if (std::abs(off) > least_miss * a.mean && sqr(off) > 9 * variance)
-      out.missed += std::copysign(sqr(scale * off), off) / (sqr(level) + dark) * sqr(double(square)) / pixels;
-  }
-  trim(errors[0]), trim(errors[1]);
-  const Mean own = mean_of(errors[0]), other = mean_of(errors[1]), bias = mean_of(biases);
-  out.guided = own.value, out.plain = other.value, out.deviation = other.deviation;
-  out.missed = std::max(out.missed, 0.0), out.bias = std::max(bias.value - bias.deviation, 0.0);
-  return out;
-}
-
-double missed_by_plain(const PlainLook& look, bool merges) {
-  return merges ? std::max(look.missed - square * look.bias, 0.0) : look.missed;
-}
 
 void show_merged(RenderState& state) {
   if (state.plain.with_merging.film.passes <= state.film.passes) return;

@@ -20,6 +20,7 @@ struct PassHalves {
   std::vector<glm::dvec3> sum, half;
 };
 inline constexpr int plain_side = 8;
+inline constexpr uint32_t plain_pixels = plain_side * plain_side;
 
 /// relMSE of images exposed to a mean of a fifth.
 struct PlainLook {
