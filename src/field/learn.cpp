@@ -296,7 +296,7 @@ Fields start_fields(const Scene& scene, double pixels, const LearnOptions& optio
   return f;
 }
 
-Fields learn(const Fields& fields, const Training& training, const Sightings& sightings, double paths,
+Fields learn(const Fields& fields, const Training& training, const Sightings& sightings, const Recorded& paths,
              const LearnOptions& options, const LightTree* lights) {
   Fields next;
   next.structure = fields.structure, next.rule = fields.rule;
@@ -305,9 +305,9 @@ Fields learn(const Fields& fields, const Training& training, const Sightings& si
   next.cells = fields.cells;
   next.lines = fields.lines;
   const std::vector<bool> moved = move_portals(training, next);
-  next.q = learn_field(fields, fields.q, fields.structure, training.q, paths, options, moved);
-  next.w = learn_field(fields, fields.w, fields.structure, training.w, paths, options, moved);
-  next.disk = learn_field(fields, fields.disk, Structure::adaptive, training.disk, paths, options);
+  next.q = learn_field(fields, fields.q, fields.structure, training.q, paths.camera, options, moved);
+  next.w = learn_field(fields, fields.w, fields.structure, training.w, paths.light, options, moved);
+  next.disk = learn_field(fields, fields.disk, Structure::adaptive, training.disk, paths.light, options);
   next.lights = fields.lights, next.starts = fields.starts;
   if (lights && !lights->nodes.empty()) learn_choices(fields, training, options, *lights, next);
   for (uint32_t c = 0; c < next.cells.size(); ++c) {

@@ -245,6 +245,19 @@ std::vector<double> relative_to(const Film& film, std::vector<double> variances)
   return variances;
 }
 
+std::vector<double> half_differences(const Film& film) {
+  const std::vector<glm::dvec3> mean = means(film);
+  const double n = film.passes, a = (film.passes + 1) / 2, b = film.passes / 2;
+  std::vector<double> out(mean.size());
+  if (film.passes < 2) return out;
+  for (size_t i = 0; i < mean.size(); ++i) {
+    const glm::dvec3 half = film.half_sum[i];
+    const double off = luminance(Rgb(half / a)) - luminance(Rgb((mean[i] * n - half) / b));
+    out[i] = off * off * a * b / n;  // (E1)
+  }
+  return out;
+}
+
 double trimmed_mean(std::vector<double> errors) {
   trim(errors);
   return std::accumulate(errors.begin(), errors.end(), 0.0) / double(errors.size());

@@ -18,53 +18,79 @@ double variance_of(const PixelSpread& s) {
   return std::max(double(s.square) - sqr(double(s.sum)) / n, 0.0) / (n - 1);
 }
 
-// Mean of the pixels around one, without the greatest: a single firefly is not worth samples.
-double around(const std::vector<double>& values, const Film& film, int x, int y) {
+// The pixels of a square around one, without it, so that it has no say in its own count.
+void around(const Film& film, int x, int y, int reach, const auto& use) {
+  for (int py = std::max(y - reach, 0); py <= std::min(y + reach, film.height - 1); ++py)
+    for (int px = std::max(x - reach, 0); px <= std::min(x + reach, film.width - 1); ++px) {
+      if (px == x && py == y) continue;
+      use(size_t(py) * film.width + px);
+    }
+}
+
+// Mean of the eight around one, without the greatest: a single firefly is not worth samples.
+double near(const std::vector<double>& values, const Film& film, int x, int y) {
   double sum = 0, most = 0;
   int n = 0;
-  for (int py = std::max(y - 1, 0); py <= std::min(y + 1, film.height - 1); ++py)
-    for (int px = std::max(x - 1, 0); px <= std::min(x + 1, film.width - 1); ++px) {
-      if (px == x && py == y) continue;
-      const double value = values[size_t(py) * film.width + px];
-      sum += value, most = std::max(most, value), ++n;
-    }
+  around(film, x, y, 1, [&](size_t i) { sum += values[i], most = std::max(most, values[i]), ++n; });
   return n > 1 ? (sum - most) / (n - 1) : sum;
 }
 
-// Standard deviation of a sample, relative to the image.
-std::vector<double> deviations(const Film& film, const std::vector<double>& errors) {
-  std::vector<double> out(errors.size());
+constexpr int reach = 3;  // of the square in which what the image varies by is held against what samples vary by
+
+// Share of it that is left, at most all: points of a sequence that lie evenly err less together than apart.
+double share_left(const std::vector<double>& found, const std::vector<double>& seen, const Film& film, int x, int y) {
+  double left = 0, all = 0;
+  around(film, x, y, reach, [&](size_t i) { left += found[i], all += seen[i]; });
+  const double share = left / all;
+  return share < 1 ? share : 1;
+}
+
+std::vector<double> each_pixel(const Film& film, const auto& value) {
+  std::vector<double> out(film.pixels());
   parallel_for(film.height, [&](int y) {
-    for (int x = 0; x < film.width; ++x) out[size_t(y) * film.width + x] = std::sqrt(around(errors, film, x, y));
+    for (int x = 0; x < film.width; ++x) out[size_t(y) * film.width + x] = value(x, y);
   });
   return out;
 }
 
 double count_for(double scale, double deviation) { return std::clamp(scale * deviation, 1.0, Adaptive::most); }
 
-// Counts of scale times the deviation: the scale at which a pass's error times its samples is least, and more of them
-// only where they bring a hundredth: where all pixels are alike, and there is no rest, any number is as good, and
-// rounding would choose. `rest` is what more of them do not mend; `share`, of their variance what the error shows.
-double best_scale(const std::vector<double>& deviations, double rest, double share) {
+// Counts of so many times the deviation, and what error times samples is by them, over that of even ones.
+struct Scale {
+  double scale = 0, quotient = 1;
+};
+
+// That of the least quotient, and of more samples only where they bring a hundredth: where noise is in proportion to
+// the counts and there is no rest, twice as many are as good, and rounding would choose. `rest` is what more samples do
+// not mend; `share`, of their variance what the error shows.
+Scale best_scale(const std::vector<double>& deviations, double rest, double share) {
   std::vector<double> sorted = deviations;
   const auto middle = sorted.begin() + std::ptrdiff_t(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
   const double typical = *middle > 0 ? *middle : *std::max_element(middle, sorted.end());
-  if (!(typical > 0)) return 0;
-  double best = 0, least = infinity;
-  for (int step = -24; step <= 24; ++step) {
-    const double scale = std::exp2(step / 4.0) / typical;
+  if (!(typical > 0)) return {};
+  const double pixels = double(deviations.size());
+  const auto product = [&](double scale) {
     double samples = 0, left = 0;
     for (const double d : deviations) {
       const double n = count_for(scale, d);
       samples += n, left += d * d / n;
     }
-    const double pixels = double(deviations.size());
-    const double product = (rest + share * left / pixels) * samples;
-    if (product < 0.99 * least) least = product, best = scale;
+    return (rest + share * left / pixels) * samples;
+  };
+  const double even = product(0);
+  Scale best;
+  for (int step = -24; step <= 24; ++step) {
+    const double scale = std::exp2(step / 4.0) / typical, quotient = product(scale) / even;
+    if (quotient < 0.99 * best.quotient) best = {scale, quotient};
   }
   return best;
 }
+
+// Quotient above which pixels are left even: counts that change, and that are no powers of two, take from sequences
+// what a little gain brings. Not where an image errs by more than its samples mostly say: where there are sparks no
+// sequence converges. Measured (docs/results/adaptive.md).
+double worthwhile(double error, double sampled) { return error > 1.2 * sampled ? 0.97 : 0.85; }
 
 }  // namespace
 
@@ -87,19 +113,26 @@ void allot(const Film& film, Adaptive& adaptive) {
   std::vector<double> variances;
   for (const PixelSpread& s : adaptive.spread) variances.push_back(variance_of(s));
   const std::vector<double> errors = relative_to(film, variances);
-  // What the samples' variance was in a pass, which had this many of them.
+  // What samples' variance was in a pass, which had this many of them.
   std::vector<double> seen = errors;
   for (size_t i = 0; i < seen.size(); ++i) seen[i] *= adaptive.passes / std::max(count(adaptive.spread[i]), 1.0);
+  const double bound = worthwhile(error, trimmed_mean(seen));
+  const std::vector<double> found = relative_to(film, half_differences(film));
+  const std::vector<double> shares =
+      each_pixel(film, [&](int x, int y) { return share_left(found, seen, film, x, y); });
+  for (size_t i = 0; i < seen.size(); ++i) seen[i] *= shares[i];
   const double sampled = trimmed_mean(seen);
   if (!(sampled > 0)) return;
   // Sparks are in the error and not in what was trimmed: the rest is not taken for more than what samples bring.
   const double rest = std::clamp(error - sampled, 0.0, sampled), share = std::min(error / sampled, 1.0);
-  const std::vector<double> wanted = deviations(film, errors);
-  const double scale = best_scale(wanted, rest, share);
-  adaptive.counts.resize(wanted.size());
-  for (size_t i = 0; i < wanted.size(); ++i) {
-    const float u = to_unit(uint32_t(hash(hash(0xada, adaptive.passes), i) >> 32));
-    adaptive.counts[i] = uint8_t(count_for(scale, wanted[i]) + double(u));
+  const std::vector<double> deviations = each_pixel(
+      film, [&](int x, int y) { return std::sqrt(near(errors, film, x, y) * shares[size_t(y) * film.width + x]); });
+  const Scale best = best_scale(deviations, rest, share);
+  if (best.quotient > bound) return adaptive.counts.clear();
+  adaptive.counts.resize(deviations.size());
+  for (size_t i = 0; i < deviations.size(); ++i) {
+    const float u = to_unit(uint32_t(hash(0xada, i) >> 32));  // the same at every look
+    adaptive.counts[i] = uint8_t(count_for(best.scale, deviations[i]) + double(u));
   }
 }
 

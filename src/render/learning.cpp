@@ -87,10 +87,15 @@ bool is_recorded(const Learning& learning, uint64_t pixel, uint32_t pass, uint32
   return !is_frozen(learning) && hash(pixel, pass) % one_in == 0;
 }
 
-void end_pass(const Scene& scene, Learning& l, const LearnOptions& options, Film& film) {
-  if (is_frozen(l) || ++l.passes < interval(l)) return;
+Recorded paths_recorded(const Learning& l, const LearnOptions& options, const Film& film, float rate) {
   const uint32_t traced = options.guided == Guided::neither ? 1 : traced_one_in(l, film);
-  const double paths = double(film.pixels()) * l.passes / (traced * recorded_one_in(l, film));
+  const double paths = double(film.pixels()) * l.passes / traced;
+  return {paths / recorded_one_in(l, film), paths * double(rate) / light_recorded_one_in(l, film, rate)};
+}
+
+void end_pass(const Scene& scene, Learning& l, const LearnOptions& options, float rate, Film& film) {
+  if (is_frozen(l) || ++l.passes < interval(l)) return;
+  const Recorded paths = paths_recorded(l, options, film, rate);
   l.fields = learn(l.fields, l.training, l.sightings, paths, options, &scene.light_tree);
   l.training = start_training(l.fields);
   l.sightings.clear();

@@ -17,9 +17,8 @@ constexpr double fastest = 16;  // of path tracing: passes for one of the guided
 // Below 1 - young / passes of the guided integrator's error after equal time path tracing takes over: what guides errs
 // less and less per pass, as fields learn.
 constexpr double young = 3;
-// It is not looked at again: after so many passes, before, or at once.
-constexpr double worse = 1.4, much_worse = 2, hopeless = 8;
-constexpr uint32_t settling = 16;
+// Quotients above which it is not looked at again, after so many passes: what guides errs less with every pass.
+double too_much(uint32_t passes) { return passes == first_look ? 8 : passes < 16 ? 2 : passes < 32 ? 1.4 : 1.1; }
 // Factor on the error of what merges: blur within squares is not seen. By errors against references
 // (docs/results/plan.md).
 constexpr double blur = 1.5;
@@ -105,12 +104,11 @@ PassHalves halves_of(const Film& film, const std::vector<uint32_t>& squares) {
 void decide(double error, double deviation, double guided, double samples, uint32_t passes, Plain& plain) {
   const bool first = passes == first_look;
   const double most = error + 2 * deviation, least = first ? error - 2 * deviation : most;
-  const double too_much = first ? hopeless : passes < settling ? much_worse : worse;
   plain.passes = passes, plain.pace = samples / passes;
   plain.guided_error = guided * passes, plain.plain_error = error * samples;
   plain.ratio = guided > 0 ? most / guided : 0;
   plain.taken = plain.ratio > 0 && plain.ratio < 1 - young / passes && most * samples < tame;
-  plain.settled = plain.taken || passes == last_look || least > too_much * guided || least * samples > wild;
+  plain.settled = plain.taken || passes == last_look || least > too_much(passes) * guided || least * samples > wild;
 }
 
 PassHalves operator-(PassHalves a, const PassHalves& b) {

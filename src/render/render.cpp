@@ -91,10 +91,10 @@ void take_counts(const Job& job, std::vector<Scratch>& scratches, RenderState& s
   }
 }
 
-void teach(const Scene& scene, const RenderOptions& options, RenderState& state) {
+void teach(const Scene& scene, const RenderOptions& options, float light_rate, RenderState& state) {
   Stopwatch watch;
   const uint32_t dropped = state.film.dropped;
-  end_pass(scene, state.learning, learn_options(options), state.film);
+  end_pass(scene, state.learning, learn_options(options), light_rate, state.film);
   if (state.film.dropped != dropped) state.pyramid.layers.clear(), state.stats.ledger = {};
   watch.add_to(state.stats.learn_seconds, state.stats.learn_cpu_seconds);
 }
@@ -111,7 +111,7 @@ void trace_next(const Job& job, const RenderOptions& options, Workshop& shop, Re
   finish_pass(film);
   if (pass.job.beyond) ++state.balance.passes;
   if (pass.job.adaptive) ++state.adaptive.passes;
-  if (job.learning && !pass.plain) teach(*job.scene, options, state);
+  if (job.learning && !pass.plain) teach(*job.scene, options, pass.job.light_rate, state);
 }
 
 }  // namespace

@@ -141,6 +141,10 @@ TEST(Learn, TotalsAreIrradianceAndMixIsTrust) {
   EXPECT_NEAR(cell.total, 2.5 + 2 * pi, 0.25) << "radiance 2 from everywhere, and the direct light";
   EXPECT_FLOAT_EQ(cell.mix, 0.6f * 16 / (16 + 48));
   EXPECT_NEAR(cell.visits, 3 / (area * paths), 1e-5 * cell.visits);
+  for (int i = 0; i < 3; ++i) record_visit(lesson.training.w, 0);
+  const Fields both = learn(lesson.fields, lesson.training, {}, {paths, paths / 2}, options);
+  EXPECT_EQ(both.q.cells[0].visits, cell.visits);
+  EXPECT_NEAR(both.w.cells[0].visits, 2 * cell.visits, 1e-5 * cell.visits) << "of as many visits of half the paths";
 }
 
 TEST(Learn, SharesAreProjectedSolidAngleTimesMean) {

@@ -129,6 +129,25 @@ TEST(Schedule, LargeImagesAreTaughtByASmallShareOfTheirPixels) {
   for (const auto& [traced, recorded] : shares(256, 256, 8)) EXPECT_EQ(traced, 1u) << "training is what it says";
 }
 
+// Half of the light subpaths there are may be fewer than what is to be recorded; where it is not, sides are alike.
+TEST(Schedule, FieldsKnowHowManyTaughtThem) {
+  Scene scene = stage(8);
+  const auto paths = [&](int width, int height, uint32_t generation, float rate) {
+    set_size(scene.camera, width, height);
+    finish(scene);
+    const Film film = make_film(scene.camera, scene.filter, true);
+    Learning learning = start_learning(scene, film, {});
+    learning.fields.generation = generation, learning.passes = 1;
+    const Recorded r = paths_recorded(learning, {}, film, rate);
+    return std::pair(r.camera, r.light);
+  };
+  EXPECT_EQ(paths(64, 64, 1, 1), std::pair(4096.0, 4096.0));
+  EXPECT_EQ(paths(64, 64, 4, 0.5f), std::pair(4096.0, 2048.0));
+  EXPECT_EQ(paths(64, 64, 8, 0.5f), std::pair(512.0, 512.0));
+  EXPECT_EQ(paths(256, 256, 4, 0.5f), std::pair(16384.0, 16384.0));
+  EXPECT_EQ(paths(256, 256, 4, 4), std::pair(16384.0, 16384.0));
+}
+
 TEST(Schedule, StoredFieldsSpareTheYoungPasses) {
   const Scene scene = strip(false);
   const Accel accel(scene);

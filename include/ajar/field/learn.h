@@ -28,8 +28,14 @@ struct LearnOptions {
 
 /// Fields that know nothing: every look-up finds no cell. Grid and probes are as fine as the memory lets them be.
 Fields start_fields(const Scene& scene, double pixels, const LearnOptions& options = {});
-/// paths: pairs of camera and light subpaths that were recorded. lights: of the scene; null: they are not learned.
-Fields learn(const Fields& fields, const Training& training, const Sightings& sightings, double paths,
+/// Subpaths that were recorded: of the camera, which teach Q, and of lights, which teach W.
+struct Recorded {
+  double camera = 0, light = 0;
+  Recorded(double of_camera, double of_lights) : camera(of_camera), light(of_lights) {}
+  Recorded(double pairs) : camera(pairs), light(pairs) {}
+};
+/// lights: of the scene; null: they are not learned.
+Fields learn(const Fields& fields, const Training& training, const Sightings& sightings, const Recorded& paths,
              const LearnOptions& options, const LightTree* lights = nullptr);
 /// Fields of a scene before something in it moved, for the scene after: of the evidence of cells that the boxes touch,
 /// grown by the cell's own edge, the share `kept` counts from now on, and less of their mix is the field's. Values stay

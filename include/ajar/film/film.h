@@ -99,6 +99,10 @@ double estimate_sample_error(const Film& film);
 /// Of something else that varies from sample to sample, given per pixel [luminance^2]: relative to the image, exposed
 /// likewise; zeros where that is black.
 std::vector<double> relative_to(const Film& film, std::vector<double> variances);
+/// Variance of a sample per pixel as the difference of the halves tells it [luminance^2]: with a single degree of
+/// freedom, but less than that of what samples bring where points of a sequence lie evenly, and more where pixels share
+/// noise.
+std::vector<double> half_differences(const Film& film);
 /// Leaves out the worst 0.1 % of pixels, given one error each; the others change places.
 void trim(std::vector<double>& errors);
 /// Mean without them.

@@ -48,7 +48,10 @@ uint32_t recorded_one_in(const Learning& learning, const Film& film);
 uint32_t light_recorded_one_in(const Learning& learning, const Film& film, float rate);
 /// Whether the subpaths of this pixel are recorded in this pass, one in so many.
 bool is_recorded(const Learning& learning, uint64_t pixel, uint32_t pass, uint32_t one_in);
-/// Call after every finished pass. Drops the blind passes from the film when the time has come.
-void end_pass(const Scene& scene, Learning& learning, const LearnOptions& options, Film& film);
+/// Of the passes since the fields were last learned.
+Recorded paths_recorded(const Learning& learning, const LearnOptions& options, const Film& film, float rate);
+/// Call after every finished pass, of which there were `rate` light subpaths for each pixel. Drops the blind passes
+/// from the film when the time has come.
+void end_pass(const Scene& scene, Learning& learning, const LearnOptions& options, float rate, Film& film);
 
 }  // namespace ajar
