@@ -36,7 +36,7 @@ StoredFields learned(const Scene& scene, uint32_t passes) {
   const Accel accel(scene);
   RenderState state = start_render(scene, o);
   render(scene, accel, o, state, nullptr);
-  return stored_fields(scene, state.learning, state.film);
+  return stored_fields(scene, state.learning, passes_drawn(state.film, state.adaptive));
 }
 
 // Gives what the strongest stratum of a node has to the weakest, and so on, and trusts that as far as anything is

@@ -102,9 +102,10 @@ double samples_of_pass(const Film& film, const Adaptive& adaptive) {
 }
 
 uint32_t passes_drawn(const Film& film, const Adaptive& adaptive) {
-  uint32_t most = 0;
-  for (const PixelSpread& s : adaptive.spread) most = std::max({most, s.counts[0], s.counts[1]});
-  return std::max(film.dropped + film.passes + (film.chunks > 0), adaptive.first + 2 * most);
+  uint32_t drawn = 0;  // of even and odd numbers in turn
+  for (const PixelSpread& s : adaptive.spread)
+    drawn = std::max({drawn, 2 * s.counts[0] - (s.counts[0] > 0), 2 * s.counts[1]});
+  return std::max(film.dropped + film.passes + (film.chunks > 0), adaptive.first + drawn);
 }
 
 void allot(const Film& film, Adaptive& adaptive) {
