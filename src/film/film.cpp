@@ -52,6 +52,12 @@ glm::dvec3 mean_around(const Film& film, const std::vector<glm::dvec3>& mean, in
   return total / double(count);
 }
 
+// The mean of the even passes less that of the odd ones.
+glm::dvec3 halves_apart(const Film& film, size_t i, const glm::dvec3& mean) {
+  const double n = film.passes, a = (film.passes + 1) / 2, b = film.passes / 2;
+  return film.half_sum[i] / a - (mean * n - film.half_sum[i]) / b;
+}
+
 // Mean over the channels of the squared error over that of the true value. A sample that makes a pixel wrong makes it
 // bright too, and must not hide its error by that: so far as the passes disagree about the pixel, the neighbours have a
 // say. epsilon: what a square is divided by at least.
@@ -59,11 +65,11 @@ double pixel_error(const Film& film, const std::vector<glm::dvec3>& mean, double
   const size_t i = size_t(y) * film.width + x;
   const double n = film.passes, a = (film.passes + 1) / 2, b = film.passes / 2;
   const glm::dvec3 near = mean_around(film, mean, x, y), v = variance_of_mean(film, i, mean[i]);
+  const glm::dvec3 apart = halves_apart(film, i, mean[i]);
   double sum = 0;
   for (int c = 0; c < 3; ++c) {
-    const double m = mean[i][c], half = film.half_sum[i][c] / a, other = (m * n - film.half_sum[i][c]) / b;
-    const double square = (half - other) * (half - other) * a * b / (n * n);  // (E1)
-    const double trust = m * m > 0 ? m * m / (m * m + 20 * v[c]) : 0;         // (E2)
+    const double m = mean[i][c], square = apart[c] * apart[c] * a * b / (n * n);  // (E1)
+    const double trust = m * m > 0 ? m * m / (m * m + 20 * v[c]) : 0;             // (E2)
     const double dim = std::min(m * m, near[c] * near[c]);
     sum += square * (trust / (m * m + epsilon) + (1 - trust) / (dim + epsilon));  // (E3)
   }
@@ -250,11 +256,7 @@ std::vector<double> half_differences(const Film& film) {
   const double n = film.passes, a = (film.passes + 1) / 2, b = film.passes / 2;
   std::vector<double> out(mean.size());
   if (film.passes < 2) return out;
-  for (size_t i = 0; i < mean.size(); ++i) {
-    const glm::dvec3 half = film.half_sum[i];
-    const double off = luminance(Rgb(half / a)) - luminance(Rgb((mean[i] * n - half) / b));
-    out[i] = off * off * a * b / n;  // (E1)
-  }
+  for (size_t i = 0; i < mean.size(); ++i) out[i] = sqr(luminance(halves_apart(film, i, mean[i]))) * a * b / n;  // (E1)
   return out;
 }
 

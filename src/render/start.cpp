@@ -77,7 +77,7 @@ Job make_job(const Scene& scene, const Accel& accel, const RenderOptions& option
   if (integrator.guided) {
     job.guided = true;
     job.walk.inner_share = integrator.splats ? guided_joins : 0;
-    job.walk.seen_share = job.walk.inner_share;  // more where they choose among many, see plan_pass
+    job.walk.seen_share = job.walk.inner_share;  // more where they choose among many, see plan_light
     job.walk.first_seen = guided_first;
   }
   return job;
