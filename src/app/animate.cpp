@@ -320,8 +320,7 @@ Work prepare(const AnimateArguments& a) {
   check_references(a, w.shooting);
   const fs::path folder = fs::path(frame_name(w.pattern, 0)).parent_path();
   w.folder = folder.empty() ? "." : folder.string();
-  make_folder(w.folder);
-  if (!a.video.empty()) check_file(a.video);  // it may lie there, too
+  if (!a.video.empty()) check_file(a.video);
   for (int f = r.first; f <= r.last; ++f)
     if (!is_done(w, f)) w.to_do.push_back(f);
   if (!w.to_do.empty()) check_outputs(w);

@@ -167,6 +167,7 @@ Log open_log(const RenderArguments& a, std::optional<Picture> reference) {
   log.path = a.log;
   log.reference = std::move(reference);
   if (a.log.empty()) return log;
+  make_folder_of(a.log);
   const bool cut = !a.resume.empty() && is_cut(a.log);
   log.file.open(a.log, a.resume.empty() ? std::ios::out : std::ios::app);
   if (!log.file) throw Error(fmt::format("--log {}: cannot be written ({})", a.log, std::strerror(errno)));

@@ -96,15 +96,16 @@ void make_video(const FramePattern& png, const FrameRange& frames, double fps, c
   // The name goes on where ffmpeg reads the kind of film from: written aside and renamed, as all files are. Absolute
   // names are taken for no option and no protocol (a:b).
   std::error_code error;
-  const fs::path aside =
-      fs::absolute(out, error).replace_extension(temporary_suffix() + fs::path(out).extension().string());
+  make_folder_of(out);
+  const fs::path target = fs::absolute(target_of(out), error);
+  const fs::path aside = fs::path(target).replace_extension(temporary_suffix() + fs::path(out).extension().string());
   const std::string names = fmt::format("{}%0{}d{}", png.before, std::max(png.digits, 1), png.after);
   const int status =
       run(find_program("ffmpeg"), {"-y", "-nostdin", "-loglevel", "error", "-framerate", fmt::format("{:g}", fps),
                                    "-start_number", fmt::format("{}", frames.first), "-i", absolute_pattern(names),
                                    "-frames:v", fmt::format("{}", frames.last - frames.first + 1), "-vf",
                                    "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p", aside.string()});
-  if (status == 0) fs::rename(aside, out, error);
+  if (status == 0) fs::rename(aside, target, error);
   if (status == 0 && !error) return;
   fs::remove(aside, error);
   if (stop_asked()) throw Interrupted{fmt::format("interrupted; {} is not made, but all frames are there", out)};

@@ -20,7 +20,7 @@ const char* cure(int error) {
   switch (error) {
     case ENOENT:
     case ENOTDIR:
-      return "make the folder first, or name another";
+      return "name another folder";
     case EACCES:
     case EPERM:
     case EROFS:
@@ -46,6 +46,11 @@ const char* cure(int error) {
 /// Writes, flushes where asked to, and closes; zero, or the error number.
 int fill(int descriptor, bool flushed, const std::function<void(Sink&)>& write) {
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(::fdopen(descriptor, "wb"), std::fclose);
+  if (!file) {
+    const int error = errno;
+    ::close(descriptor);
+    return error;
+  }
   Sink sink{file.get()};
   write(sink);
   if (sink.error == 0 && std::fflush(sink.file) != 0) sink.error = errno;
@@ -99,9 +104,17 @@ int open_aside(const std::string& path, const std::string& target, std::string& 
   }
 }
 
+/// Tries a file of the target's name in the nearest folder above it that is there: those between are made later.
 void try_out(const std::string& path, const std::string& target) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path file = fs::absolute(target, error);
+  fs::path folder = file.parent_path();
+  while (!fs::exists(folder, error) && !error && folder.has_relative_path()) folder = folder.parent_path();
+  if (error) fail(path, error.value());
+  if (!fs::is_directory(folder, error)) fail(path, ENOTDIR);
   std::string aside;
-  ::close(open_aside(path, target, aside));
+  ::close(open_aside(path, (folder / file.filename()).string(), aside));
   ::unlink(aside.c_str());
 }
 
@@ -116,7 +129,17 @@ void Sink::bytes(const void* data, size_t size) {
   if (error == 0 && std::fwrite(data, 1, size, file) != size) error = errno;
 }
 
+std::string target_of(const std::string& path) { return place_of(path).target; }
+
+void make_folder_of(const std::string& path) {
+  const std::filesystem::path folder = std::filesystem::path(target_of(path)).parent_path();
+  std::error_code error;
+  if (!folder.empty()) std::filesystem::create_directories(folder, error);
+  if (error) fail(path, error.value());
+}
+
 void write_aside(const std::string& path, const std::function<void(Sink&)>& write) {
+  make_folder_of(path);
   const Place place = place_of(path);
   if (place.direct) return write_direct(path, write);
   std::string aside;
@@ -160,13 +183,6 @@ void check_file(const std::string& path) {
   try_out(path, place.target);
 }
 
-void check_folder(const std::string& path) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  fs::path there = fs::absolute(path, error);
-  while (!fs::exists(there, error) && there.has_relative_path()) there = there.parent_path();
-  if (!fs::is_directory(there, error)) fail(path, ENOTDIR);
-  try_out(path, (there / "ajar").string());
-}
+void check_folder(const std::string& path) { try_out(path, (std::filesystem::path(path) / "ajar").string()); }
 
 }  // namespace ajar

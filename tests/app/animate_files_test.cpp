@@ -248,6 +248,10 @@ TEST_F(AnimateFiles, FilmsMayLieBesideTheirFrames) {
   fs::permissions(in("ffmpeg"), fs::perms::owner_all);
   EXPECT_EQ(said({"--frames", "2", "--spp", "1", "-o", in("shot/f_%d.exr"), "--video", in("shot/film.mp4")}), "");
   EXPECT_TRUE(fs::exists(in("shot/film.mp4")));
+  fs::create_symlink("far/film.mp4", in("link.mp4"));
+  EXPECT_EQ(said({"--frames", "2", "--spp", "1", "-o", in("shot/f_%d.exr"), "--video", in("link.mp4")}), "");
+  EXPECT_TRUE(fs::is_symlink(in("link.mp4")));
+  EXPECT_TRUE(fs::exists(in("far/film.mp4")));
   fs::create_directories(in("100%d of it"));
   fs::current_path(in("100%d of it"));
   EXPECT_EQ(said({"--frames", "2", "--spp", "1", "-o", "f_%d.exr", "--video", "film.mp4"}), "");

@@ -111,8 +111,7 @@ TEST_F(Compare, ErrorsNameBothSizesOrTheFile) {
   for (const char* part : {"a.exr", "8x6", "b.exr", "7x6", "--crop"})
     EXPECT_NE(error.find(part), std::string::npos) << error;
   EXPECT_NE(error_of({a, b + "x"}).find("b.exrx: there is no such file"), std::string::npos);
-  EXPECT_NE(error_of({a, a, "--diff", (folder / "none" / "d.png").string()}).find("d.png: cannot be written"),
-            std::string::npos);
+  EXPECT_NE(error_of({a, a, "--diff", a + "/d.png"}).find("d.png: cannot be written"), std::string::npos);
   EXPECT_THROW(run({a}), Error);
 }
 

@@ -178,7 +178,7 @@ TEST_F(FieldsUsed, WhatMakesNoSenseIsAnError) {
       {{"--load-fields", none_such}, "guided-bdpt", none_such + ": no such file of fields"},
       {{"--load-fields", box}, "guided-bdpt", box + ": not a file of fields of this version"},
       {{"--load-fields", fields, "--resume", state}, "guided-bdpt", "leave out either this or --resume"},
-      {{"--save-fields", none_such + "/f"}, "guided-bdpt", "make the folder first"},
+      {{"--save-fields", box + "/f"}, "guided-bdpt", "cannot be written (Not a directory); name another folder"},
       {{"--save-fields", folder.string()}, "guided-bdpt", "name a file, not a folder"},
   };
   for (const Case& c : cases) {

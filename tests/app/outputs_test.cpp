@@ -62,14 +62,15 @@ TEST_F(Outputs, WrongOnesAreErrorsBeforeTheRender) {
   const std::vector<Case> cases = {
       {{"-o", "there"}, "-o there: is a folder; name a file in it, there/NAME.exr"},
       {{"-o", "there/"}, "is a folder"},
-      {{"-o", "none/a.exr"}, "none/a.exr: cannot be written (No such file or directory)"},
+      {{"-o", "box.xml/a.exr"}, "box.xml/a.exr: cannot be written (Not a directory)"},
       {{"-o", "box.xml"}, "-o box.xml: is no name for an image; write NAME.exr"},
       {{"-o", "a.jpg"}, "no name for an image"},
       {{"-o", "a.json"}, "no name for an image"},
       {{"-o", "shot.v1"}, "no name for an image"},
       {{"-o", ".png"}, "no name for an image"},
       {{"-o", "-"}, "no name for an image"},
-      {{"--checkpoint", "none/a"}, "none/a: cannot be written"},
+      {{"--checkpoint", "room.xml/a"}, "room.xml/a: cannot be written"},
+      {{"--log", "room.xml/a"}, "room.xml/a: cannot be written"},
       {{"--checkpoint", "there"}, "there: cannot be written"},
       {{"--log", "there"}, "there: cannot be written"},
       {{"--techniques", "box.xml"}, "box.xml: cannot be written"},
@@ -131,6 +132,16 @@ TEST_F(Outputs, TheNameChoosesTheFormatInAnyCase) {
   for (const char* name : {"A.json", "B.json", "B.png"}) EXPECT_TRUE(fs::exists(name)) << name;
   run({"-o", "shot.v1.exr"});
   EXPECT_TRUE(fs::exists("shot.v1.json"));
+}
+
+// As an animation's frames have it; made when there is something to put there.
+TEST_F(Outputs, FoldersThatAreMissingAreMade) {
+  EXPECT_NE(error_of({"-o", "new/shot/a.exr", "--reference", "none.exr", "--log", "logs/a"}).find("none.exr"),
+            std::string::npos);
+  EXPECT_EQ(count(), 3u);
+  run({"-o", "new/shot/a.exr", "--png", "--log", "logs/a", "--checkpoint", "states/a"});
+  for (const char* name : {"new/shot/a.exr", "new/shot/a.png", "new/shot/a.json", "logs/a", "states/a"})
+    EXPECT_TRUE(fs::exists(name)) << name;
 }
 
 TEST_F(Outputs, LeadingZerosMakeNoOtherNumber) {
@@ -353,12 +364,12 @@ TEST_F(Outputs, WhatFailsDoesNotKeepTheRestFromBeingWritten) {
 }
 
 TEST_F(Outputs, ASaveThatFailsOnTheWayIsAWarning) {
-  Saver saver{"none/state", "key"};
+  Saver saver{"box.xml/state", "key"};
   RenderState state;
   testing::internal::CaptureStderr();
   for (const double seconds : {59.0, 61.0, 122.0}) state.stats.seconds = seconds, saver.save(state);
   const std::string said = testing::internal::GetCapturedStderr();
-  const std::string warning = "ajar: warning: none/state: cannot be written";
+  const std::string warning = "ajar: warning: box.xml/state: cannot be written";
   EXPECT_NE(said.find(warning), std::string::npos) << said;
   EXPECT_EQ(said.find(warning), said.rfind(warning)) << "said twice";
   EXPECT_EQ(saver.saved, 122);

@@ -1,15 +1,31 @@
 // Files that are written aside: whether they can be is known before, and leaves no trace.
 #include "ajar/core/files.h"
 
+#include <dlfcn.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
 
 #include "kit/files.h"
+
+namespace {
+bool out_of_streams = false;
+}
+
+// In the place of the C library's.
+extern "C" std::FILE* fdopen(int descriptor, const char* mode) noexcept {
+  if (out_of_streams) {
+    errno = ENOMEM;
+    return nullptr;
+  }
+  return reinterpret_cast<decltype(&fdopen)>(::dlsym(RTLD_NEXT, "fdopen"))(descriptor, mode);
+}
 
 namespace ajar {
 namespace {
@@ -38,7 +54,8 @@ TEST_F(Files, TryingLeavesThingsAsTheyWere) {
 }
 
 TEST_F(Files, WhatCannotBeWrittenIsKnownBefore) {
-  EXPECT_NE(checked(file("none/a")).find("make the folder"), std::string::npos);
+  EXPECT_NE(checked(file(std::string(300, 'a') + "/a")).find("shorter name"), std::string::npos);
+  EXPECT_NE(checked(file("none/" + std::string(300, 'a'))).find("shorter name"), std::string::npos);
   EXPECT_NE(checked(folder.string()).find("name a file"), std::string::npos);
   EXPECT_NE(checked(file("")).find("name a file"), std::string::npos);
   EXPECT_NE(checked(file(std::string(300, 'a'))).find("shorter name"), std::string::npos);
@@ -85,10 +102,35 @@ TEST_F(Files, LinksAreFollowedWhetherTheirFilesAreThereOrNot) {
   write_text(file("c"), "text");
   EXPECT_TRUE(fs::is_symlink(file("a")) && fs::is_symlink(file("c")));
   EXPECT_EQ(kit::bytes_of(file("far/b")), "text");
+  EXPECT_EQ(target_of(file("c")), target_of(file("far/b")));
   fs::create_symlink("none/b", file("d"));
-  EXPECT_NE(checked(file("d")).find("make the folder"), std::string::npos);
+  EXPECT_EQ(checked(file("d")), "");
+  EXPECT_EQ(target_of(file("d")), file("none/b"));
+  write_text(file("d"), "text");
+  EXPECT_EQ(kit::bytes_of(file("none/b")), "text");
   fs::create_symlink("e", file("e"));
   EXPECT_NE(checked(file("e")).find("cannot be written"), std::string::npos);
+}
+
+TEST_F(Files, FoldersAreMadeWhereTheyAreWrittenTo) {
+  EXPECT_EQ(checked(file("a/b/c")), "");
+  EXPECT_EQ(count(), 0u) << "tried alone";
+  write_text(file("a/b/c"), "text");
+  EXPECT_EQ(kit::bytes_of(file("a/b/c")), "text");
+  write_text(file("text"), "text");
+  for (const std::string& in_a_file : {file("text/a"), file("text/a/b")}) {
+    EXPECT_NE(checked(in_a_file).find(in_a_file + ": cannot be written (Not a directory); name another folder"),
+              std::string::npos);
+    EXPECT_NE(error_of([&] { write_text(in_a_file, ""); }).find(in_a_file + ": cannot be written"), std::string::npos);
+  }
+}
+
+TEST_F(Files, AStreamThatCannotBeOpenedIsAnError) {
+  out_of_streams = true;
+  const std::string said = error_of([&] { write_text(file("a"), "text"); });
+  out_of_streams = false;
+  EXPECT_NE(said.find("a: cannot be written (Cannot allocate memory)"), std::string::npos) << said;
+  EXPECT_EQ(count(), 0u);
 }
 
 TEST_F(Files, WhoCannotSayWhatToWriteWritesNothing) {

@@ -153,7 +153,6 @@ TEST_F(PictureFile, WritesThatFailSayWhyAndLeaveNothing) {
   const Picture picture = noise(4, 4, {"R", "G", "B"});
   write_text(file("file"), "x");
   const auto exr = [&](const std::string& path) { return error_of([&] { write_exr(path, picture, {}, false); }); };
-  EXPECT_NE(exr(file("none/a.exr")).find("make the folder"), std::string::npos) << exr(file("none/a.exr"));
   EXPECT_NE(exr(file("file/a.exr")).find("file/a.exr: cannot be written"), std::string::npos);
   EXPECT_NE(exr(folder.string()).find("name a file"), std::string::npos);
   EXPECT_NE(exr(file(std::string(300, 'a'))).find("shorter name"), std::string::npos);

@@ -21,10 +21,15 @@ struct Sink {
 /// are not unique on a disk that several machines or containers share.
 std::string temporary_suffix();
 
-/// Calls write for a temporary file in the same folder, flushes it to the disk and renames it. A symbolic link stays,
-/// and what it leads to is written; a name that exists and is no regular file (/dev/null, a pipe) is written to as it
-/// is. Throws Error that names file, cause and cure; then no temporary file is left, and a file of that name is as it
-/// was.
+/// Where a file of this name is, or will be: at the end of symbolic links, whether there is something or not.
+std::string target_of(const std::string& path);
+/// Makes the folder that it lies in, and those above. Throws Error.
+void make_folder_of(const std::string& path);
+
+/// Calls write for a temporary file in the same folder, flushes it to the disk and renames it. A folder that is not
+/// there is made. A symbolic link stays, and what it leads to is written; a name that exists and is no regular file
+/// (/dev/null, a pipe) is written to as it is. Throws Error that names file, cause and cure; then no temporary file is
+/// left, and a file of that name is as it was.
 void write_aside(const std::string& path, const std::function<void(Sink&)>& write);
 void write_aside(const std::string& path, const void* bytes, size_t size);
 void write_text(const std::string& path, const std::string& text);
@@ -33,7 +38,7 @@ bool is_there(const std::string& path);
 /// Makes a folder and those above it; one that is there already will do. Throws Error.
 void make_folder(const std::string& path);
 
-/// Throws Error where write_aside would: tries it, with a file that it takes away again.
+/// Throws Error where write_aside would: tries it, with a file that it takes away again; makes no folder.
 void check_file(const std::string& path);
 /// Throws Error where files could not be written into the folder, once make_folder has made it; makes nothing.
 void check_folder(const std::string& path);
