@@ -259,6 +259,7 @@ void render_frames(Work& w) {
 // What would stand in the way of the files to come.
 void check_outputs(const Work& w) {
   check_files(w.arguments, w.to_do.front());
+  for (const int frame : w.to_do) check_record(frame_name(w.pattern, frame));
   if (w.carries) check_file(carried_name(w));
 }
 

@@ -112,6 +112,13 @@ void check_layers(const RenderArguments& a, const std::vector<Named>& files) {
   }
 }
 
+// Of a render: what is none is somebody's.
+bool is_record(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const nlohmann::json found = nlohmann::json::parse(file, nullptr, false);
+  return found.is_object() && found.contains("version") && found.contains("image") && found.contains("options");
+}
+
 // AOVs are left out where memory is too short for them: the image is not lost.
 Picture image_of(const RenderArguments& a, const Scene& scene, const Accel& accel, const RenderState& state) {
   if (a.features.empty()) return develop(state.film);
@@ -188,7 +195,19 @@ void check_outputs(const RenderArguments& a) {
   check_layers(a, outputs), check_layers(a, read(a));
   if (!a.techniques.empty()) require_apart({{"--techniques", a.techniques}}, outputs);
   for (const Named& output : outputs) check_file(output.path);
+  check_record(a.out);
   if (!a.techniques.empty()) check_folder(a.techniques);
+}
+
+void check_record(const std::string& image) {
+  const std::string record = with_extension(image, ".json");
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(record, unknown) || std::filesystem::file_size(record, unknown) == 0) return;
+  if (!is_record(record))
+    throw Error(
+        fmt::format("{}: is no record of a render, which would take its place beside {}; move it, or name "
+                    "another image",
+                    record, image));
 }
 
 void write_record(const RenderArguments& a, const Run& run, const RenderState& state) {

@@ -33,6 +33,8 @@ Log open_log(const RenderArguments&, std::optional<Picture> reference);
 void check_outputs(const RenderArguments&);
 /// The same, where an output is one of the files that the scene was read from.
 void check_apart(const RenderArguments&, const Scene&);
+/// Throws Error where the name of an image's record is that of a file which is none.
+void check_record(const std::string& image);
 void write_record(const RenderArguments&, const Run&, const RenderState&);
 /// Image, features and record; prints what it wrote, unless told to be quiet.
 void write_image(const RenderArguments&, const Scene&, const Accel&, Run&, const RenderState&);

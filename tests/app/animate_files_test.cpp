@@ -118,6 +118,15 @@ TEST_F(AnimateFiles, WhatStandsInTheWayIsToldBeforeTheWork) {
   }
 }
 
+TEST_F(AnimateFiles, WhatIsNoRecordIsNotWrittenOver) {
+  fs::create_directories(in("shot"));
+  write("shot/f_1.json", "{}");
+  EXPECT_SAYS(said({"--frames", "2", "--spp", "1", "--integrator", "path", "-o", in("shot/f_%d.exr")}),
+              "shot/f_1.json: is no record of a render");
+  EXPECT_EQ(kit::bytes_of(in("shot/f_1.json")), "{}");
+  EXPECT_FALSE(fs::exists(in("shot/f_0.exr")));
+}
+
 // Key by key a parameter may be what the scene takes; between keys it need not be.
 TEST_F(AnimateFiles, AnErrorInTheMiddleLeavesFigures) {
   put(R"(<default name="depth" value="9"/>

@@ -144,6 +144,22 @@ TEST_F(Outputs, FoldersThatAreMissingAreMade) {
     EXPECT_TRUE(fs::exists(name)) << name;
 }
 
+TEST_F(Outputs, WhatIsNoRecordIsNotWrittenOver) {
+  for (const char* foreign : {"{\"version\": 1}", "[1, 2]", "notes"}) {
+    write_text("a.json", foreign);
+    EXPECT_EQ(
+        error_of({}),
+        "a.json: is no record of a render, which would take its place beside a.exr; move it, or name another image");
+    EXPECT_EQ(kit::bytes_of("a.json"), foreign);
+    EXPECT_FALSE(fs::exists("a.exr"));
+  }
+  write_text("a.json", "");
+  EXPECT_EQ(error_of({}), "");
+  const std::string record = kit::bytes_of("a.json");
+  EXPECT_EQ(error_of({"--seed", "1"}), "") << "its own";
+  EXPECT_NE(kit::bytes_of("a.json"), record);
+}
+
 TEST_F(Outputs, LeadingZerosMakeNoOtherNumber) {
   for (const auto& [typed, meant] : {std::pair{"010", 10}, {"08", 8}, {"0001", 1}}) {
     run({"--spp", typed, "--seed", typed, "--max-depth", typed});
