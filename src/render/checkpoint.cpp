@@ -10,7 +10,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind checkpoint_kind = {"AJARck23", "checkpoint", "render once with --checkpoint",
+constexpr FileKind checkpoint_kind = {"AJARck24", "checkpoint", "render once with --checkpoint",
                                       "start again without --resume"};
 
 // One list of fields for both ways.
@@ -102,11 +102,61 @@ bool is_sound(const Film& film, size_t pixels) {
          film.chunks < chunk_count(film) && film.dropped % 2 == 0;
 }
 
+// Throws Error unless the file is of this render.
+void check_made_for(Reader& r, const std::string& key, const std::string& integrator) {
+  std::string stored, begun;
+  r.key(stored), r.key(begun);
+  if (begun != integrator)
+    throw Error(fmt::format("{}: a checkpoint of {}, not of {}; go on with that, or {}", r.path, begun, integrator,
+                            checkpoint_kind.cure));
+  if (stored != key)
+    throw Error(fmt::format("{}: made with another scene or other options: {}; give what it was made with, or {}",
+                            r.path, difference(stored, key), checkpoint_kind.cure));
+}
+
+// Film, counts, and images of strategies.
+void read_image(Reader& r, RenderState& state) {
+  const size_t pixels = state.film.pixels();
+  film_fields(r, state.film);
+  r.require(is_sound(state.film, pixels));
+  stats_fields(r, state.stats);
+  read(r, state.stats.replay);
+  uint8_t kept = 0;
+  r.value(kept);
+  if (state.pyramid.kept && kept == 0)
+    throw Error(r.path + ": made without --techniques, whose images would lack its passes; leave --techniques out");
+  read(r, state.pyramid);
+  for (const auto& [st, layer] : state.pyramid.layers)
+    r.require(layer.raw.size() == pixels && layer.weighted.size() == pixels);
+  if (!state.pyramid.kept) state.pyramid = {};
+}
+
+// What decides how the next passes are traced, but for what is learned.
+void read_steering(Reader& r, RenderState& state) {
+  const size_t pixels = state.film.pixels();
+  r.value(state.light_rate), r.value(state.effort);
+  r.require(state.effort >= RenderState::least_effort && state.effort <= 1);
+  r.require(state.light_rate >= RenderState::least_light && state.light_rate <= RenderState::most_light &&
+            std::exp2(std::round(std::log2(state.light_rate))) == state.light_rate);
+  balance_fields(r, state.balance);
+  r.require(state.balance.goes_on >= Balance::least && state.balance.goes_on <= Balance::most);
+  r.require(state.balance.found.empty() || state.balance.found.size() == pixels);
+  adaptive_fields(r, state.adaptive);
+  r.require(is_sound(state.adaptive, pixels));
+  // For their place and filter, which are not in the file.
+  state.plain.guided.film = state.plain.with_merging.film = state.film;
+  plain_fields(r, state.plain);
+  r.require(state.plain.seen.half.size() == state.plain.seen.sum.size());
+  r.require(is_sound(state.plain.adaptive, pixels));
+  for (const Film* film : {&state.plain.guided.film, &state.plain.with_merging.film})
+    r.require(film->passes == 0 || is_sound(*film, pixels));
+}
+
 }  // namespace
 
 void save_checkpoint(const std::string& path, const std::string& key, const RenderState& state) {
   write_file(path, checkpoint_kind, [&](Writer& w) {
-    w.key(key);
+    w.key(key), w.key(state.integrator);
     film_fields(w, state.film);
     stats_fields(w, state.stats);
     write(w, state.stats.replay);
@@ -130,41 +180,10 @@ std::string read_checkpoint_key(const std::string& path) {
 
 void load_checkpoint(const std::string& path, const std::string& key, RenderState& state) {
   Reader r(path, checkpoint_kind);
-  std::string stored;
-  r.key(stored);
-  if (stored != key)
-    throw Error(fmt::format("{}: made with another scene or other options: {}; give what it was made with, or {}", path,
-                            difference(stored, key), checkpoint_kind.cure));
-  const size_t pixels = state.film.pixels();
+  check_made_for(r, key, state.integrator);
   const bool learns = !state.learning.fields.table.slots.empty();
-  film_fields(r, state.film);
-  r.require(is_sound(state.film, pixels));
-  stats_fields(r, state.stats);
-  read(r, state.stats.replay);
-  uint8_t kept = 0;
-  r.value(kept);
-  if (state.pyramid.kept && kept == 0)
-    throw Error(path + ": made without --techniques, whose images would lack its passes; leave --techniques out");
-  read(r, state.pyramid);
-  for (const auto& [st, layer] : state.pyramid.layers)
-    r.require(layer.raw.size() == pixels && layer.weighted.size() == pixels);
-  if (!state.pyramid.kept) state.pyramid = {};
-  r.value(state.light_rate), r.value(state.effort);
-  r.require(state.effort >= RenderState::least_effort && state.effort <= 1);
-  r.require(state.light_rate >= RenderState::least_light && state.light_rate <= RenderState::most_light &&
-            std::exp2(std::round(std::log2(state.light_rate))) == state.light_rate);
-  balance_fields(r, state.balance);
-  r.require(state.balance.goes_on >= Balance::least && state.balance.goes_on <= Balance::most);
-  r.require(state.balance.found.empty() || state.balance.found.size() == pixels);
-  adaptive_fields(r, state.adaptive);
-  r.require(is_sound(state.adaptive, pixels));
-  // For their place and filter, which are not in the file.
-  state.plain.guided.film = state.plain.with_merging.film = state.film;
-  plain_fields(r, state.plain);
-  r.require(state.plain.seen.half.size() == state.plain.seen.sum.size());
-  r.require(is_sound(state.plain.adaptive, pixels));
-  for (const Film* film : {&state.plain.guided.film, &state.plain.with_merging.film})
-    r.require(film->passes == 0 || is_sound(*film, pixels));
+  read_image(r, state);
+  read_steering(r, state);
   read(r, state.learning);
   r.finish();
   if (!learns) state.learning = {};

@@ -22,6 +22,7 @@ constexpr double guided_first = 2;
 RenderState start_render(const Scene& scene, const RenderOptions& options) {
   RenderState state;
   const Integrator& integrator = find_integrator(options.integrator);
+  state.integrator = integrator.name;
   state.film = make_film(scene.camera, scene.filter, integrator.splats);
   if (options.limit_fireflies) limit_fireflies(state.film);
   state.pyramid.kept = options.techniques;
@@ -41,11 +42,10 @@ void check_state(const Scene& scene, const RenderOptions& options, const RenderS
         "render: the film is of {}x{} pixels from {},{} on, the camera's are {}x{} from {},{} on; start_render makes a "
         "state for each size",
         f.width, f.height, f.x0, f.y0, c.crop_width, c.crop_height, c.crop_x, c.crop_y));
-  if (f.splats != integrator.splats)
+  if (state.integrator != integrator.name)
     throw Error(fmt::format(
-        "render: the film takes {} light subpaths, and {} {}; start_render makes a state for each integrator",
-        f.splats ? "what comes by" : "nothing of", options.integrator,
-        integrator.splats ? "brings it by them" : "brings none"));
+        "render: the state was started for {}, and is asked to go on with {}; start_render makes a state for each",
+        state.integrator, integrator.name));
   if (learns(options) && state.learning.fields.starts.cuts.empty())
     throw Error(fmt::format("render: {} learns, and the state has no fields; start_render makes one with these options",
                             options.integrator));

@@ -259,8 +259,10 @@ TEST_F(Outputs, AResumedRenderKeepsItsIntegrator) {
   EXPECT_EQ(render({"--resume", "planned", "--spp", "4"}), "");
   EXPECT_EQ(integrator(), "bdpt");
   const std::string other = render({"--resume", "planned", "--integrator", "path", "--spp", "4"});
-  EXPECT_NE(other.find("{\"integrator\":\"bdpt\", here"), std::string::npos) << other;
-  EXPECT_NE(other.find("give what it was made with, or start again without --resume"), std::string::npos) << other;
+  EXPECT_EQ(other, "planned: a checkpoint of bdpt, not of path; go on with that, or start again without --resume");
+  EXPECT_NE(
+      render({"--resume", "planned", "--seed", "2"}).find("\"seed\":0, here \"seed\":2; give what it was made with"),
+      std::string::npos);
   EXPECT_NE(render({"--resume", "planned", "--plan", "auto"}).find("leave out --plan"), std::string::npos);
   EXPECT_EQ(render({"--resume", "none"}), "none: no such checkpoint; render once with --checkpoint");
 }

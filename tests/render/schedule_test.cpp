@@ -1,4 +1,6 @@
 // What is traced, recorded and dropped when, what guides, and when a render ends.
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "ajar/scene/load.h"
@@ -27,10 +29,13 @@ TEST(Schedule, StatesAreOfTheirRenders) {
   Scene aside = scene;
   aside.camera.crop_x = 1;
   has(said(options_of("path", 1), options_of("path", 1), aside), "of 16x16 pixels from 1,0 on");
-  has(of("path", "bdpt"), "light subpaths");
-  has(of("bdpt", "path"), "light subpaths");
-  has(of("path", "guided-path"), "fields");
-  has(of("bdpt", "guided-bdpt"), "fields");
+  for (const auto& [one, other] : {std::pair{"path", "bdpt"},
+                                   {"bdpt", "path"},
+                                   {"bdpt", "light"},
+                                   {"light", "bdpt"},
+                                   {"path", "guided-path"},
+                                   {"guided-bdpt", "guided-vcm"}})
+    has(of(one, other), fmt::format("started for {}, and is asked to go on with {};", one, other).c_str());
   RenderOptions lights = options_of("path", 1), blind = options_of("path", 1);
   lights.learn_lights = true, blind.next_event = false;
   has(said(options_of("path", 1), lights, scene), "fields");

@@ -25,6 +25,7 @@ struct RenderStats {
 
 /// Everything that a render needs in order to go on, and all that it has made.
 struct RenderState {
+  std::string integrator;  ///< that it was started for
   Film film;
   Pyramid pyramid;  ///< filled when RenderOptions::techniques
   RenderStats stats;
@@ -51,7 +52,7 @@ RenderState start_render(const Scene& scene, const RenderOptions& options);
 /// Traces until spp, budget or noise target is reached or the monitor says stop; without it, never less than one whole
 /// pass of those that count. The target is looked at after 8, 10,
 /// 12, 14, 16, 18, 20 ... 32, 36 ... passes. Deterministic for spp and noise: the same bytes with any number of
-/// threads, and when stopped and called again with the same state. Throws Error for a state of another size or kind of
+/// threads, and when stopped and called again with the same state. Throws Error for a state of another size or
 /// integrator than scene and options ask for, and where next_event is false and light subpaths are traced.
 void render(const Scene& scene, const Accel& accel, const RenderOptions& options, RenderState& state,
             const Monitor& monitor);
@@ -59,7 +60,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
 /// Saves the state with a key that names scene and options; written aside and renamed. Throws Error.
 void save_checkpoint(const std::string& path, const std::string& key, const RenderState& state);
 /// Fills a state that start_render made for the same scene and options. Throws Error when the file is damaged, of
-/// another version, of another key, or lacks the images of strategies that the state keeps.
+/// another version, key or integrator, or lacks the images of strategies that the state keeps.
 void load_checkpoint(const std::string& path, const std::string& key, RenderState& state);
 /// The key that a checkpoint was saved with. Throws Error where the file is none, or of another version.
 std::string read_checkpoint_key(const std::string& path);
