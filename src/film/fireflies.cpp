@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "ajar/core/parallel.h"
+#include "ajar/film/pixels.h"
 
 namespace ajar {
 namespace {
@@ -36,11 +36,10 @@ struct Passes {
 
 float limit_at(const Film& film, int x, int y) {
   Passes passes;
-  for (int py = std::max(0, y - reach); py <= std::min(film.height - 1, y + reach); ++py)
-    for (int px = std::max(0, x - reach); px <= std::min(film.width - 1, x + reach); ++px) {
-      const Bright* of = &film.brightest[kept * (size_t(py) * film.width + px)];
-      for (int k = 0; k < kept; ++k) passes.add(luminance(of[k].value), of[k].pass);
-    }
+  for_each_around(film, x, y, reach, [&](size_t i) {
+    const Bright* of = &film.brightest[kept * i];
+    for (int k = 0; k < kept; ++k) passes.add(luminance(of[k].value), of[k].pass);
+  });
   return slack * passes.best.back().luminance;
 }
 
@@ -58,12 +57,8 @@ void note(Film& film, size_t pixel, const Rgb& value) {
 }
 
 std::vector<float> limits(const Film& film) {
-  std::vector<float> out(film.pixels(), infinity);
-  if (film.passes < uint32_t(kept)) return out;
-  parallel_for(film.height, [&](int y) {
-    for (int x = 0; x < film.width; ++x) out[size_t(y) * film.width + x] = limit_at(film, x, y);
-  });
-  return out;
+  if (film.passes < uint32_t(kept)) return std::vector<float>(film.pixels(), infinity);
+  return each_pixel(film, [&](int x, int y) { return limit_at(film, x, y); });
 }
 
 Rgb limited(const Rgb& value, float limit) {

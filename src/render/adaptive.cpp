@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ajar/core/parallel.h"
 #include "ajar/core/sampler.h"
+#include "ajar/film/pixels.h"
 
 namespace ajar {
 namespace {
@@ -18,20 +18,25 @@ double variance_of(const PixelSpread& s) {
   return std::max(double(s.square) - sqr(double(s.sum)) / n, 0.0) / (n - 1);
 }
 
-// The pixels of a square around one, without it, so that it has no say in its own count.
-void around(const Film& film, int x, int y, int reach, const auto& use) {
-  for (int py = std::max(y - reach, 0); py <= std::min(y + reach, film.height - 1); ++py)
-    for (int px = std::max(x - reach, 0); px <= std::min(x + reach, film.width - 1); ++px) {
-      if (px == x && py == y) continue;
-      use(size_t(py) * film.width + px);
-    }
+std::vector<double> variances_of(const std::vector<PixelSpread>& spread) {
+  std::vector<double> out;
+  for (const PixelSpread& s : spread) out.push_back(variance_of(s));
+  return out;
+}
+
+// The others of the square around a pixel: it has no say in its own count.
+void others_around(const Film& film, int x, int y, int reach, const auto& use) {
+  const size_t own = size_t(y) * film.width + x;
+  for_each_around(film, x, y, reach, [&](size_t i) {
+    if (i != own) use(i);
+  });
 }
 
 // Mean of the eight around one, without the greatest: a single firefly is not worth samples.
 double near(const std::vector<double>& values, const Film& film, int x, int y) {
   double sum = 0, most = 0;
   int n = 0;
-  around(film, x, y, 1, [&](size_t i) { sum += values[i], most = std::max(most, values[i]), ++n; });
+  others_around(film, x, y, 1, [&](size_t i) { sum += values[i], most = std::max(most, values[i]), ++n; });
   return n > 1 ? (sum - most) / (n - 1) : sum;
 }
 
@@ -40,17 +45,15 @@ constexpr int reach = 3;  // of the square in which what the image varies by is 
 // Share of it that is left, at most all: points of a sequence that lie evenly err less together than apart.
 double share_left(const std::vector<double>& found, const std::vector<double>& seen, const Film& film, int x, int y) {
   double left = 0, all = 0;
-  around(film, x, y, reach, [&](size_t i) { left += found[i], all += seen[i]; });
+  others_around(film, x, y, reach, [&](size_t i) { left += found[i], all += seen[i]; });
   const double share = left / all;
   return share < 1 ? share : 1;
 }
 
-std::vector<double> each_pixel(const Film& film, const auto& value) {
-  std::vector<double> out(film.pixels());
-  parallel_for(film.height, [&](int y) {
-    for (int x = 0; x < film.width; ++x) out[size_t(y) * film.width + x] = value(x, y);
-  });
-  return out;
+// Of what samples varied by in a pass, the share that is left in the image.
+std::vector<double> shares_left(const Film& film, const std::vector<double>& seen) {
+  const std::vector<double> found = relative_to(film, half_differences(film));
+  return each_pixel(film, [&](int x, int y) { return share_left(found, seen, film, x, y); });
 }
 
 double count_for(double scale, double deviation) { return std::clamp(scale * deviation, 1.0, Adaptive::most); }
@@ -92,6 +95,16 @@ Scale best_scale(const std::vector<double>& deviations, double rest, double shar
 // sequence converges. Measured (docs/results/adaptive.md).
 double worthwhile(double error, double sampled) { return error > 1.2 * sampled ? 0.97 : 0.85; }
 
+// Whole numbers that are so many times the deviation in the mean, the same at every look.
+std::vector<uint8_t> draw_counts(double scale, const std::vector<double>& deviations) {
+  std::vector<uint8_t> counts;
+  for (size_t i = 0; i < deviations.size(); ++i) {
+    const float u = to_unit(uint32_t(hash(0xada, i) >> 32));
+    counts.push_back(uint8_t(count_for(scale, deviations[i]) + double(u)));
+  }
+  return counts;
+}
+
 }  // namespace
 
 double samples_of_pass(const Film& film, const Adaptive& adaptive) {
@@ -111,16 +124,12 @@ uint32_t passes_drawn(const Film& film, const Adaptive& adaptive) {
 void allot(const Film& film, Adaptive& adaptive) {
   const double error = estimate_sample_error(film);
   if (adaptive.spread.empty() || !(error > 0) || !(error < infinity)) return;
-  std::vector<double> variances;
-  for (const PixelSpread& s : adaptive.spread) variances.push_back(variance_of(s));
-  const std::vector<double> errors = relative_to(film, variances);
+  const std::vector<double> errors = relative_to(film, variances_of(adaptive.spread));
   // What samples' variance was in a pass, which had this many of them.
   std::vector<double> seen = errors;
   for (size_t i = 0; i < seen.size(); ++i) seen[i] *= adaptive.passes / std::max(count(adaptive.spread[i]), 1.0);
   const double bound = worthwhile(error, trimmed_mean(seen));
-  const std::vector<double> found = relative_to(film, half_differences(film));
-  const std::vector<double> shares =
-      each_pixel(film, [&](int x, int y) { return share_left(found, seen, film, x, y); });
+  const std::vector<double> shares = shares_left(film, seen);
   for (size_t i = 0; i < seen.size(); ++i) seen[i] *= shares[i];
   const double sampled = trimmed_mean(seen);
   if (!(sampled > 0)) return;
@@ -129,12 +138,10 @@ void allot(const Film& film, Adaptive& adaptive) {
   const std::vector<double> deviations = each_pixel(
       film, [&](int x, int y) { return std::sqrt(near(errors, film, x, y) * shares[size_t(y) * film.width + x]); });
   const Scale best = best_scale(deviations, rest, share);
-  if (best.quotient > bound) return adaptive.counts.clear();
-  adaptive.counts.resize(deviations.size());
-  for (size_t i = 0; i < deviations.size(); ++i) {
-    const float u = to_unit(uint32_t(hash(0xada, i) >> 32));  // the same at every look
-    adaptive.counts[i] = uint8_t(count_for(best.scale, deviations[i]) + double(u));
-  }
+  if (best.quotient > bound)
+    adaptive.counts.clear();
+  else
+    adaptive.counts = draw_counts(best.scale, deviations);
 }
 
 }  // namespace ajar

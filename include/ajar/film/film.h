@@ -64,6 +64,8 @@ inline TileBounds tile_bounds(const Film& film, uint32_t chunk) {
 glm::ivec2 tile_shift(const Film& film);
 /// Samples per pixel, with the part of the pass at work.
 inline double spp_of(const Film& film) { return film.passes + double(film.chunks) / chunk_count(film); }
+/// Of the pass at work, how much is done, by pixels.
+double share_of_pass(const Film& film);
 
 Film make_film(const Camera& camera, const Filter& filter, bool splats);
 /// Adds the splats of consecutive chunks, in their order, filtered. The result does not depend on threads.
