@@ -2,8 +2,8 @@
 // sampling. Without light paths (WalkOptions) it is path tracing that keeps its vertices, and can teach: s = 0 and s
 // = 1.
 
+#include "bdpt.h"
 #include "ajar/path/arrival.h"
-#include "job.h"
 
 namespace ajar {
 namespace {
@@ -12,122 +12,16 @@ namespace {
 // from there: at the full effort (J3). Rays to lights (J4).
 constexpr float seen_joins = 12, inner_joins = 3, most_blocks = 32, seen_next_events = 5, inner_next_events = 1.5f;
 
-// One camera sample with its light subpath, at work.
-struct Work {
-  const Job& job;
-  Sample& sample;
-  Scratch& scratch;
-  double light_share = 1;  // of the light walk, for s = 2
-  float pixel = -1;        // radiance that the pixel is expected to have; 0: fields do not know; -1: not asked yet
-};
-
-float weigh(const Work& work, Candidate& c) {
-  c.shares.inner = work.job.walk.inner_share, c.shares.seen = work.job.walk.seen_share;
-  c.shares.merge_inner = work.job.walk.merging.inner, c.shares.first_seen = work.job.walk.first_seen;
-  if (!work.job.next_event) c.shares.light_first = 0;
-  return float(weight(work.job.walk.heuristic, c));
-}
-
-// Weighs a visible candidate and puts it where it belongs.
-void add(Work& work, Candidate& c, int s, int t) {
-  const float w = weigh(work, c);
-  const Rgb weighted = c.value * w;
-  if (!accept(weighted, work.sample, work.scratch)) return;
-  if (t == 1) {
-    work.scratch.splats->push_back({c.raster, weighted * work.scratch.halves->splat_counts});
-    gain_splat(work.job, work.scratch);
-  } else {
-    work.sample.value += weighted;
-    gain(work.scratch, s, t, weighted * work.sample.filter);
-  }
-  if (!work.scratch.strategies) return;
-  // What the camera sample found gets its filter here; splats are filtered on the film.
-  const Vec2 raster = t == 1 ? c.raster : Vec2(work.sample.x, work.sample.y);
-  const float filter = t == 1 ? work.scratch.halves->splat_counts : work.sample.filter;
-  work.scratch.strategies->push_back({s, t, raster, c.value * filter, weighted * filter});
-}
-
-bool add_if_visible(Work& work, Candidate& c, int s, int t) {
-  ++work.scratch.counters.shadow_rays;
-  ++work.scratch.ledger->at(s, t).rays;
-  if (!is_unblocked(work.job, c.segment, t)) return false;
-  add(work, c, s, t);
-  return true;
-}
-
-// Radiance that a vertex is expected to scatter, never less than this share of a typical value: errors are judged
-// against it.
-float expected_radiance(const Fields& fields, const Guide& guide, float least) {
-  const double out = scatters(guide) * fields.q.cells[guide.cell].total;
-  return float(std::sqrt(sqr(out) + sqr(double(least) * fields.q.unit)));
-}
-
-// What a pixel's error counts for where the lens sees this vertex: errors are judged relative to the image, so the
-// lens's importance is divided by what the field expects the pixel to be. (G5)
-float relative_importance(const Fields& fields, const Guide& guide) {
-  return float(fields.q.unit) / expected_radiance(fields, guide, 0.02f);
-}
-
 // Radiance that the camera subpath, at the first vertex that can be joined, expects its pixel to have.
 float expected_pixel(const Fields* fields, const Vertex& v) {
   const bool known = fields && v.guide.cell != none && fields->q.cells[v.guide.cell].total > 0;
   return known ? luminance(v.beta) * expected_radiance(*fields, v.guide, 0.002f) : 0;
 }
 
-// What a vertex received from the light, or the lens, itself: nothing where something is in the way.
-void teach_direct(const Work& work, Vertex& v, float received) {
-  const Guide& guide = v.guide;
-  if (!work.sample.teaches || !work.job.guided || guide.cell == none) return;
-  const Fields& fields = *work.job.walk.fields;
-  if (guide.side == Side::light) received *= relative_importance(fields, guide);
-  v.received = received;
-  record_direct(fields.of(guide.side), work.job.training->of(guide.side), guide.cell, received);
-  charge(work.scratch, work.scratch.ledger->learn_ticks);
-}
-
 // Which light the vertex asked for, and what it got from it: nothing where something is in the way.
 void teach_light(const Work& work, const Vertex& v, LightChances& chances, const LightPoint& point, float arrives) {
   record_next_event(*work.job.scene, v.guide, chances, *work.job.training, point, arrives);
   charge(work.scratch, work.scratch.ledger->learn_ticks);
-}
-
-// What the light subpath brought to the first surface that it met, if it met one.
-void teach_start(const Work& work, const Subpath& light, const Walk& walk) {
-  if (!work.sample.teaches || !work.job.guided) return;
-  float brings = 0, per_watt = 0;
-  if (light.n > 1) {
-    const Vertex& first = light[1];
-    brings = promise(first.guide, first.beta).all, per_watt = promise(first.guide, Rgb(1)).all;
-  }
-  record_start(*work.job.scene, *work.job.walk.fields, *work.job.training, walk.start, brings, per_watt);
-  charge(work.scratch, work.scratch.ledger->learn_ticks);
-}
-
-// The light subpath, and t = 1 at every vertex. The light itself, s = 1, is left to the camera ray that sees it.
-void trace_light_subpath(Work& work) {
-  const Job& job = work.job;
-  Sampler sampler = make_sampler(job.sampler, job.seed, Side::light, work.sample.path, work.sample.pass);
-  Subpath& light = work.scratch.light;
-  Walk walk;
-  if (!start_light(*job.scene, job.walk, sampler, light, walk)) return;
-  ++work.scratch.counters.light_paths;
-  Surface surface;
-  while (light.n < job.walk.max_edges) {
-    if (light.n > 1 && !scatter(job.walk, sampler, light, walk)) return;
-    ++work.scratch.counters.light_rays;
-    const bool hit = step(*job.scene, *job.accel, job.walk, light, walk, surface);
-    charge(work.scratch, work.scratch.ledger->light_ticks);
-    if (light.n == (hit ? 2 : 1)) teach_start(work, light, walk);
-    if (!hit) return;
-    work.light_share = walk.first_share;
-    if (job.merges_alone || !connectable(light[light.n - 1].guide)) continue;
-    Candidate c;
-    const bool seen =
-        join_camera(*job.scene, work.sample.lens, light, light.n, work.light_share, job.walk.light_paths, c) &&
-        add_if_visible(work, c, light.n, 1);
-    charge_join(work.scratch, light.n, 1);
-    teach_direct(work, light[light.n - 1], seen ? luminance(c.arrives) : 0);
-  }
 }
 
 // s = 0: the camera subpath ran into a light.
@@ -320,18 +214,6 @@ void teach_camera(Work& work) {
 }
 
 }  // namespace
-
-void trace_light_half(const Job& job, Sample& sample, Scratch& scratch) {
-  Work work{job, sample, scratch};
-  scratch.light.n = 0;
-  trace_light_subpath(work);
-  if (!job.merges_alone) add(scratch.traced, scratch.light, work.light_share);
-  if (job.walk.merging.paths > 0) keep_photons(job, sample, work.light_share, scratch);
-  charge(scratch, scratch.ledger->light_ticks);
-  if (!sample.teaches) return;
-  record_subpath(*job.walk.fields, *job.training, scratch.sightings, scratch.light, Side::light);
-  charge(scratch, scratch.ledger->learn_ticks);
-}
 
 void trace_bdpt(const Job& job, Sample& sample, Scratch& scratch) {
   Work work{job, sample, scratch};

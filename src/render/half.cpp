@@ -1,0 +1,60 @@
+// The light half of bidirectional path tracing: the light subpath, its joins to the lens, and what is kept of it.
+
+#include "bdpt.h"
+
+namespace ajar {
+namespace {
+
+// What the light subpath brought to the first surface that it met, if it met one.
+void teach_start(const Work& work, const Subpath& light, const Walk& walk) {
+  if (!work.sample.teaches || !work.job.guided) return;
+  float brings = 0, per_watt = 0;
+  if (light.n > 1) {
+    const Vertex& first = light[1];
+    brings = promise(first.guide, first.beta).all, per_watt = promise(first.guide, Rgb(1)).all;
+  }
+  record_start(*work.job.scene, *work.job.walk.fields, *work.job.training, walk.start, brings, per_watt);
+  charge(work.scratch, work.scratch.ledger->learn_ticks);
+}
+
+}  // namespace
+
+void trace_light_subpath(Work& work) {
+  const Job& job = work.job;
+  Sampler sampler = make_sampler(job.sampler, job.seed, Side::light, work.sample.path, work.sample.pass);
+  Subpath& light = work.scratch.light;
+  Walk walk;
+  if (!start_light(*job.scene, job.walk, sampler, light, walk)) return;
+  ++work.scratch.counters.light_paths;
+  Surface surface;
+  while (light.n < job.walk.max_edges) {
+    if (light.n > 1 && !scatter(job.walk, sampler, light, walk)) return;
+    ++work.scratch.counters.light_rays;
+    const bool hit = step(*job.scene, *job.accel, job.walk, light, walk, surface);
+    charge(work.scratch, work.scratch.ledger->light_ticks);
+    if (light.n == (hit ? 2 : 1)) teach_start(work, light, walk);
+    if (!hit) return;
+    work.light_share = walk.first_share;
+    if (job.merges_alone || !connectable(light[light.n - 1].guide)) continue;
+    Candidate c;
+    const bool seen =
+        join_camera(*job.scene, work.sample.lens, light, light.n, work.light_share, job.walk.light_paths, c) &&
+        add_if_visible(work, c, light.n, 1);
+    charge_join(work.scratch, light.n, 1);
+    teach_direct(work, light[light.n - 1], seen ? luminance(c.arrives) : 0);
+  }
+}
+
+void trace_light_half(const Job& job, Sample& sample, Scratch& scratch) {
+  Work work{job, sample, scratch};
+  scratch.light.n = 0;
+  trace_light_subpath(work);
+  if (!job.merges_alone) add(scratch.traced, scratch.light, work.light_share);
+  if (job.walk.merging.paths > 0) keep_photons(job, sample, work.light_share, scratch);
+  charge(scratch, scratch.ledger->light_ticks);
+  if (!sample.teaches) return;
+  record_subpath(*job.walk.fields, *job.training, scratch.sightings, scratch.light, Side::light);
+  charge(scratch, scratch.ledger->learn_ticks);
+}
+
+}  // namespace ajar
