@@ -315,7 +315,7 @@ Work prepare(const AnimateArguments& a) {
   w.options_key = animation_key(w, *zero);
   // What all frames have by the user's word each may have otherwise by the scene's. Lessons that time cut short are
   // others than whole ones.
-  const bool in_time = w.options.seconds > 0 || w.options.cpu_seconds > 0;
+  const bool in_time = has_time_limit(w.options);
   w.key = fmt::format("{},{}{}{}{}", w.options_key, files_key(*zero), a.max_depth == not_given ? "" : ",one depth",
                       a.size.empty() ? "" : ",one size", in_time ? ",in time" : "");
   check_references(a, w.shooting);

@@ -167,6 +167,19 @@ void write_all(const RenderArguments& a, const Scene& scene, const Accel& accel,
   write_each(writes);
 }
 
+// What is asked for, of this scene.
+Run run_of(const RenderArguments& a, Scene& scene) {
+  Run run;
+  run.scene_path = a.scene, run.out_path = a.out, run.content = scene.content, run.defines = a.defines;
+  run.at = a.at, run.lenient = a.lenient;
+  run.load_fields = a.load_fields, run.save_fields = a.save_fields;
+  run.planned = plans(a, scene);
+  run.options = render_options(a, scene, run.planned);
+  run.threads = a.threads > 0 ? a.threads : int(std::thread::hardware_concurrency());
+  run.triangles = count_triangles(scene);
+  return run;
+}
+
 void run_render(RenderArguments a) {
   const double wall0 = wall_seconds(), cpu0 = process_cpu_seconds();
   if (a.out.empty()) a.out = std::filesystem::path(a.scene).stem().string() + ".exr";
@@ -177,16 +190,9 @@ void run_render(RenderArguments a) {
   check_apart(a, scene);
   check_time(a.at, scene);
   if (!a.size.empty()) set_size(scene.camera, a.size);
-  Run run;
-  run.scene_path = a.scene, run.out_path = a.out, run.content = scene.content, run.defines = a.defines;
-  run.at = a.at, run.lenient = a.lenient;
-  run.load_fields = a.load_fields, run.save_fields = a.save_fields;
-  run.planned = plans(a, scene);
-  run.options = render_options(a, scene, run.planned);
+  Run run = run_of(a, scene);
   std::optional<Picture> reference = read_reference(a, scene.camera);
   if (!a.quiet) say_notes(scene.notes);
-  run.threads = a.threads > 0 ? a.threads : int(std::thread::hardware_concurrency());
-  run.triangles = count_triangles(scene);
   const double wall1 = wall_seconds(), cpu1 = process_cpu_seconds();
   run.load_seconds = wall1 - wall0, run.load_cpu = cpu1 - cpu0;
   const Accel accel(scene);

@@ -226,6 +226,22 @@ void check_plan(const RenderArguments& a) {
     throw Error("--plan auto: a checkpoint goes on with the integrator that it began with; leave out --plan");
 }
 
+// How next-event estimation chooses among them.
+void choose_lights(const RenderArguments& a, Scene& scene, RenderOptions& o) {
+  if (a.no_next_event && !a.light_choice.empty())
+    throw Error(
+        fmt::format("--light-choice {}: with --no-next-event no light is chosen; leave it out", a.light_choice));
+  o.learn_lights = a.light_choice == "learned" && !is_guided(o.integrator);
+  if (o.integrator == "light" && (a.light_choice == "tree" || a.light_choice == "learned"))
+    throw Error(fmt::format(
+        "--light-choice {}: light chooses its lights by power or uniform; leave it out, or take one", a.light_choice));
+  if (o.learn_lights && o.integrator != "path" && o.integrator != "bdpt")
+    throw Error(fmt::format("--light-choice learned: {} learns no choice of lights; take path, bdpt or what guides",
+                            o.integrator));
+  if (a.light_choice == "uniform" || a.light_choice == "power")
+    set_light_choice(scene, a.light_choice == "uniform" ? LightChoice::uniform : LightChoice::power);
+}
+
 }  // namespace
 
 bool plans(const RenderArguments& a, const Scene& scene) {
@@ -265,21 +281,10 @@ RenderOptions render_options(const RenderArguments& a, Scene& scene, bool planne
   if (o.final_gather > 0 && o.integrator != "photon")
     throw Error(fmt::format("--final-gather: {} has no photon map to gather from; take photon", o.integrator));
   check_next_event(o, scene);
-  if (a.no_next_event && !a.light_choice.empty())
-    throw Error(
-        fmt::format("--light-choice {}: with --no-next-event no light is chosen; leave it out", a.light_choice));
   const Guided guided = o.learn.guided;
   o.learn = learn_options(a, o.integrator, planned || is_guided(o.integrator));
   if (lists_parts(a)) o.learn.guided = guided;
-  o.learn_lights = a.light_choice == "learned" && !is_guided(o.integrator);
-  if (o.integrator == "light" && (a.light_choice == "tree" || a.light_choice == "learned"))
-    throw Error(fmt::format(
-        "--light-choice {}: light chooses its lights by power or uniform; leave it out, or take one", a.light_choice));
-  if (o.learn_lights && o.integrator != "path" && o.integrator != "bdpt")
-    throw Error(fmt::format("--light-choice learned: {} learns no choice of lights; take path, bdpt or what guides",
-                            o.integrator));
-  if (a.light_choice == "uniform" || a.light_choice == "power")
-    set_light_choice(scene, a.light_choice == "uniform" ? LightChoice::uniform : LightChoice::power);
+  choose_lights(a, scene, o);
   if (!a.versus.empty()) check_versus(a.versus, planned ? "what is planned" : o.integrator);
   if (o.techniques && !planned && !has_strategies(o.integrator))
     throw Error(

@@ -89,7 +89,7 @@ nlohmann::ordered_json summary(const Run& run, const RenderState& state) {
   j["scene"] = run.scene_path;
   j["image"] = run.out_path;
   j["options"] = options_json(run, state.film);
-  j["spp"] = state.film.passes + double(state.film.chunks) / chunk_count(state.film);
+  j["spp"] = spp_of(state.film);
   j["interrupted"] = run.interrupted;
   const RenderStats& stats = state.stats;
   j["seconds"] = phases_of(run.load_seconds, run.build_seconds,
@@ -128,7 +128,7 @@ Metadata metadata(const Run& run, const RenderState& state) {
           {"ajar:scene", run.scene_path},
           {"ajar:options", text_of(options_json(run, state.film), -1)},
           {"ajar:seed", double(run.options.seed)},
-          {"ajar:spp", state.film.passes + double(state.film.chunks) / chunk_count(state.film)},
+          {"ajar:spp", spp_of(state.film)},
           {"ajar:seconds", state.stats.seconds},
           {"ajar:cpu_seconds", state.stats.cpu_seconds}};
 }

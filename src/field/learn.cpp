@@ -279,6 +279,14 @@ std::vector<bool> move_portals(const Training& training, Fields& next) {
   return moved;
 }
 
+// Light subpaths start as the plain choice has it.
+void forget_starts(Fields& fields) {
+  const double unit = fields.starts.unit;
+  fields.starts = {};
+  fields.starts.unit = unit;
+  add_cut(fields.starts, none);
+}
+
 }  // namespace
 
 Fields start_fields(const Scene& scene, double pixels, const LearnOptions& options) {
@@ -346,10 +354,7 @@ void restrict_to(Fields& fields, Guided guided) {
   if (light) return;
   for (Field* f : {&fields.w, &fields.disk})
     for (FieldCell& c : f->cells) c.mix = 0;
-  const double unit = fields.starts.unit;
-  fields.starts = {};
-  fields.starts.unit = unit;
-  add_cut(fields.starts, none);
+  forget_starts(fields);
 }
 
 bool fit_lights(const LightTree& tree, const LearnOptions& options, Fields& fields) {
@@ -360,13 +365,7 @@ bool fit_lights(const LightTree& tree, const LearnOptions& options, Fields& fiel
     for (size_t i = 0; i < cuts; ++i) add_cut(fields.lights, none);
     changed = true;
   }
-  if (!fits(fields.starts, tree)) {
-    const double unit = fields.starts.unit;
-    fields.starts = {};
-    fields.starts.unit = unit;
-    add_cut(fields.starts, none);
-    changed = true;
-  }
+  if (!fits(fields.starts, tree)) forget_starts(fields), changed = true;
   if (fields.disk.cells.size() != tree.regions.size()) {
     const double unit = fields.disk.unit;
     fields.disk = {};

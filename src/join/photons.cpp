@@ -1,6 +1,7 @@
 #include "ajar/join/photons.h"
 
 #include <bit>
+#include <utility>
 
 #include "ajar/core/error.h"
 #include "ajar/core/parallel.h"
@@ -42,6 +43,61 @@ struct Ref {
 // Photons are sorted in two steps, both parallel and both keeping order: into ranges of buckets, list by list, then
 // within each range.
 constexpr uint32_t most_ranges = 64;
+struct Sorting {
+  const std::vector<const Photons*>& lists;
+  std::vector<size_t> first;  // photon of each list, among all
+  uint32_t ranges = 1;
+  int shift = 0;                    // a range has 2^shift buckets
+  std::vector<uint32_t> of_photon;  // its bucket
+  std::vector<uint32_t> places;     // by range, then list: how many photons there are, then where the next one goes
+  std::vector<uint32_t> starts;     // of ranges, and the end of the last one
+  std::vector<Ref> refs;            // all photons, range by range
+
+  uint32_t& place(uint32_t bucket, size_t list) { return places[(bucket >> shift) * lists.size() + list]; }
+};
+
+void find_buckets(const PhotonMap& map, Sorting& s) {
+  s.places.assign(s.lists.size() * s.ranges, 0);
+  parallel_for(s.lists.size(), [&](size_t l) {
+    for (size_t i = 0; i < s.lists[l]->size(); ++i) {
+      const Vec3& p = (*s.lists[l])[i].p;
+      const int level = level_of(merge_radius(map.merging, p));
+      const uint32_t bucket = bucket_of(map, level, cell_of(p, level));
+      s.of_photon[s.first[l] + i] = bucket;
+      ++s.place(bucket, l);
+    }
+  });
+}
+
+void find_places(Sorting& s) {
+  uint32_t sum = 0;
+  for (size_t i = 0; i < s.places.size(); ++i) {
+    if (i % s.lists.size() == 0) s.starts.push_back(sum);
+    sum += std::exchange(s.places[i], sum);
+  }
+  s.starts.resize(s.ranges + 1, sum);
+}
+
+void deal(Sorting& s) {
+  parallel_for(s.lists.size(), [&](size_t l) {
+    for (size_t i = 0; i < s.lists[l]->size(); ++i) {
+      const uint32_t bucket = s.of_photon[s.first[l] + i];
+      s.refs[s.place(bucket, l)++] = {bucket, &(*s.lists[l])[i]};
+    }
+  });
+}
+
+void sort_range(const Sorting& s, uint32_t range, PhotonMap& map) {
+  const uint32_t first = range << s.shift, from = s.starts[range], to = s.starts[range + 1];
+  std::vector<uint32_t> next(size_t(1) << s.shift, 0);  // of each bucket
+  for (uint32_t i = from; i < to; ++i) ++next[s.refs[i].bucket - first];
+  uint32_t at = from;
+  for (size_t b = 0; b < next.size(); ++b) {
+    map.begin[first + b] = at;
+    at += std::exchange(next[b], at);
+  }
+  for (uint32_t i = from; i < to; ++i) map.photons[next[s.refs[i].bucket - first]++] = *s.refs[i].photon;
+}
 
 }  // namespace
 
@@ -67,58 +123,20 @@ void add_photons(Photons& photons, const Subpath& light, Heuristic h, double inn
 }
 
 void fill(PhotonMap& map, const Merging& merging, const std::vector<const Photons*>& lists) {
-  map.merging = merging;
+  Sorting sorting{lists};
   size_t all = 0;
-  std::vector<size_t> first;
-  for (const Photons* list : lists) first.push_back(all), all += list->size();
+  for (const Photons* list : lists) sorting.first.push_back(all), all += list->size();
   if (all >= 1u << 31) throw Error("too many light vertices to merge at once: use a smaller --max-depth");
-  const uint32_t buckets = std::bit_ceil(uint32_t(std::max<size_t>(all, 2))), ranges = std::min(buckets, most_ranges);
-  map.begin.assign(buckets + 1, 0);
-  const int shift = std::countr_zero(buckets / ranges);
-  std::vector<uint32_t> of_photon(all);
-  std::vector<uint32_t> counts(lists.size() * ranges, 0);
-  parallel_for(lists.size(), [&](size_t l) {
-    for (size_t i = 0; i < lists[l]->size(); ++i) {
-      const Vec3& p = (*lists[l])[i].p;
-      const int level = level_of(merge_radius(merging, p));
-      const uint32_t bucket = bucket_of(map, level, cell_of(p, level));
-      of_photon[first[l] + i] = bucket;
-      ++counts[(bucket >> shift) * lists.size() + l];
-    }
-  });
-  std::vector<uint32_t> starts(ranges + 1, 0);
-  uint32_t sum = 0;
-  for (uint32_t r = 0; r < ranges; ++r) {
-    starts[r] = sum;
-    for (size_t l = 0; l < lists.size(); ++l) {
-      uint32_t& c = counts[r * lists.size() + l];
-      const uint32_t n = c;
-      c = sum, sum += n;
-    }
-  }
-  starts[ranges] = sum;
-  std::vector<Ref> refs(all);
-  parallel_for(lists.size(), [&](size_t l) {
-    for (size_t i = 0; i < lists[l]->size(); ++i) {
-      const uint32_t bucket = of_photon[first[l] + i];
-      refs[counts[(bucket >> shift) * lists.size() + l]++] = {bucket, &(*lists[l])[i]};
-    }
-  });
+  const uint32_t buckets = std::bit_ceil(uint32_t(std::max<size_t>(all, 2)));
+  sorting.ranges = std::min(buckets, most_ranges), sorting.shift = std::countr_zero(buckets / sorting.ranges);
+  sorting.of_photon.resize(all), sorting.refs.resize(all);
+  map.merging = merging;
+  map.begin.assign(buckets + 1, uint32_t(all));
   map.photons.resize(all);
-  parallel_for(ranges, [&](uint32_t r) {
-    uint32_t* begin = map.begin.data() + (size_t(r) << shift);
-    const uint32_t n = buckets / ranges, from = r << shift;
-    std::vector<uint32_t> next(n, 0);
-    for (uint32_t i = starts[r]; i < starts[r + 1]; ++i) ++next[refs[i].bucket - from];
-    uint32_t at = starts[r];
-    for (uint32_t b = 0; b < n; ++b) {
-      begin[b] = at;
-      at += next[b];
-      next[b] = begin[b];
-    }
-    for (uint32_t i = starts[r]; i < starts[r + 1]; ++i) map.photons[next[refs[i].bucket - from]++] = *refs[i].photon;
-  });
-  map.begin[buckets] = uint32_t(all);
+  find_buckets(map, sorting);
+  find_places(sorting);
+  deal(sorting);
+  parallel_for(sorting.ranges, [&](uint32_t range) { sort_range(sorting, range, map); });
 }
 
 Buckets buckets_near(const PhotonMap& map, const Vec3& p, float radius) {

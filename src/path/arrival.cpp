@@ -8,7 +8,7 @@ constexpr float window = 100, least = 0.2f;
 
 // Of what is expected to come by way of the last vertex, the share that strategies with this vertex bring, by their
 // weights. The others join one before it, where a light subpath that comes here is joined as well.
-float share_of_last(const WalkOptions& walk, const Subpath& camera) {
+float share_brought(const WalkOptions& walk, const Subpath& camera) {
   const Vertex& v = camera[camera.n - 1];
   if (v.seen || v.guide.cell == none) return 1;
   const double others = count_before(walk, camera) * double(walk.fields->w.cells[v.guide.cell].visits);
@@ -32,7 +32,7 @@ bool is_worth_it(const WalkOptions& options, Sampler& sampler, Subpath& camera, 
   const float all = promise(v.guide, v.beta).all;
   if (!(walk.promise > 0) || !(all > 0)) return true;
   const float goes_on =
-      std::clamp(window * options.goes_on * share_of_last(options, camera) * all / walk.promise, least, 1.0f);  // (G15)
+      std::clamp(window * options.goes_on * share_brought(options, camera) * all / walk.promise, least, 1.0f);  // (G15)
   if (!(sampler.at(number).x < goes_on)) return false;
   walk.sure = walk.sure && goes_on == 1;
   v.beta /= goes_on, walk.survival /= goes_on;

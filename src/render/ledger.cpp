@@ -3,6 +3,19 @@
 #include <chrono>
 
 namespace ajar {
+namespace {
+
+// Over joins and merges of every (s, t).
+template <class T>
+T sum_of(const Ledger& ledger, T StrategyCost::*part) {
+  T sum = 0;
+  for (const auto* table : {&ledger.strategies, &ledger.merges})
+    for (const auto& row : *table)
+      for (const StrategyCost& cost : row) sum += cost.*part;
+  return sum;
+}
+
+}  // namespace
 
 StrategyCost& StrategyCost::operator+=(const StrategyCost& o) {
   joins += o.joins, rays += o.rays, visible += o.visible, ticks += o.ticks, energy += o.energy;
@@ -25,24 +38,12 @@ uint64_t clock_ticks() {
 #endif
 }
 
-uint64_t join_ticks(const Ledger& ledger) {
-  uint64_t sum = 0;
-  for (const auto* table : {&ledger.strategies, &ledger.merges})
-    for (const auto& row : *table)
-      for (const StrategyCost& c : row) sum += c.ticks;
-  return sum;
-}
+uint64_t join_ticks(const Ledger& ledger) { return sum_of(ledger, &StrategyCost::ticks); }
 
 uint64_t total_ticks(const Ledger& ledger) {
   return join_ticks(ledger) + ledger.camera_ticks + ledger.light_ticks + ledger.learn_ticks;
 }
 
-double total_energy(const Ledger& ledger) {
-  double sum = 0;
-  for (const auto* table : {&ledger.strategies, &ledger.merges})
-    for (const auto& row : *table)
-      for (const StrategyCost& c : row) sum += c.energy;
-  return sum;
-}
+double total_energy(const Ledger& ledger) { return sum_of(ledger, &StrategyCost::energy); }
 
 }  // namespace ajar

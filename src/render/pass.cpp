@@ -16,7 +16,7 @@ constexpr uint32_t least_chunks = 16;
 // Chunks that the rest of a time budget suffices for, at the pace so far; few to begin with. How many are traced
 // between two merges changes no result.
 uint32_t affordable_chunks(const RenderOptions& options, const RenderState& state) {
-  if (options.seconds <= 0 && options.cpu_seconds <= 0) return batch_chunks;
+  if (!has_time_limit(options)) return batch_chunks;
   const double done = double(state.film.passes) * chunk_count(state.film) + state.film.chunks;
   double affordable = done > 0 ? batch_chunks : least_chunks;
   const auto limit = [&](double budget, double used) {

@@ -180,10 +180,9 @@ Picture with_variance(const Picture& image, const Picture& variance) {
   return both;
 }
 
-ZTest z_test(const Picture& image, const Picture& reference) {
-  require_same_size(image, reference);
-  if (!has_variance(image) && !has_variance(reference))
-    throw Error("no image has channels Variance.R, Variance.G, Variance.B; render with variance, or name its file");
+namespace {
+
+std::array<Comparison, 3> comparisons_of(const Picture& image, const Picture& reference) {
   const std::array<Plane, 3> a = rgb_planes(image), b = rgb_planes(reference);
   std::array<Comparison, 3> channels;
   for (size_t c = 0; c < 3; ++c) {
@@ -200,18 +199,14 @@ ZTest z_test(const Picture& image, const Picture& reference) {
     for (size_t i = 0; i < channel.variance.size(); ++i)
       if (const double least = rounding * channel.magnitude[i]; channel.variance[i] <= least * least)
         channel.variance[i] = 0;
+  return channels;
+}
 
-  ZTest test;
-  pixel_figures(channels, test);
-  std::vector<Level> levels;
-  const Region whole{0, 0, image.width, image.height};
-  for (size_t c = 0; c < 3; ++c)
-    descend(channels[c], "RGB"[c], correlation_inflation(channels[c]), whole, sum_region(channels[c], whole), 0,
-            levels);
-  // Bonferroni: level k may use the share 1 / ((k + 1)(k + 2)) of the significance (they sum to less than 1), half of
-  // it the whole image; within a level all regions and channels alike.
+// Bonferroni: level k may use the share 1 / ((k + 1)(k + 2)) of the significance (they sum to less than 1), half of it
+// the whole image; within a level all regions and channels alike.
+void most_significant(const std::vector<Level>& levels, const Region& whole, ZTest& test) {
   test.p = 2;  // more than any probability: where nothing stands out, the region is the whole image
-  test.width = image.width, test.height = image.height;
+  test.width = whole.width, test.height = whole.height;
   for (size_t k = 0; k < levels.size(); ++k) {
     const double p = levels[k].least_p * levels[k].count * double((k + 1) * (k + 2));
     if (p >= test.p) continue;
@@ -221,6 +216,23 @@ ZTest z_test(const Picture& image, const Picture& reference) {
     test.channel = levels[k].channel;
   }
   test.p = std::min(test.p, 1.0);
+}
+
+}  // namespace
+
+ZTest z_test(const Picture& image, const Picture& reference) {
+  require_same_size(image, reference);
+  if (!has_variance(image) && !has_variance(reference))
+    throw Error("no image has channels Variance.R, Variance.G, Variance.B; render with variance, or name its file");
+  const std::array<Comparison, 3> channels = comparisons_of(image, reference);
+  ZTest test;
+  pixel_figures(channels, test);
+  std::vector<Level> levels;
+  const Region whole{0, 0, image.width, image.height};
+  for (size_t c = 0; c < 3; ++c)
+    descend(channels[c], "RGB"[c], correlation_inflation(channels[c]), whole, sum_region(channels[c], whole), 0,
+            levels);
+  most_significant(levels, whole, test);
   return test;
 }
 

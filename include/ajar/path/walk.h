@@ -132,7 +132,7 @@ inline bool choose_direction(const Guide& guide, Mode mode, const WalkOptions& o
   return true;
 }
 
-/// Starts at the camera: vertex 0 and the ray through a raster position. factor of the hit is set by step.
+/// Starts at the camera: vertex 0 and the ray through a raster position.
 void start_camera(const Scene& scene, const WalkOptions& options, const Vec2& raster, const Vec2& lens,
                   Subpath& subpath, Walk& walk);
 /// Starts at a light; false where there is none or it emits nothing here.
