@@ -25,6 +25,21 @@ void collect_ids(Loader& loader, const Node& node) {
   }
 }
 
+// Both of the names of an <alias>, as Mitsuba has them: one that there is, and one that there is not.
+void check_aliases(const Loader& loader) {
+  const auto& aliases = loader.document.aliases;
+  for (const auto& [as, node] : aliases) {
+    const auto taken = loader.ids.find(as);
+    if (taken != loader.ids.end())
+      fail(loader, node,
+           fmt::format("the id \"{}\" is taken already at {}:{}; rename one of them", shortened(as),
+                       loader.document.files[taken->second->file], taken->second->line));
+    if (!loader.ids.contains(node.id) && !aliases.contains(node.id))
+      fail(loader, node,
+           fmt::format("nothing in the scene has the id \"{}\"; correct it, or add what it names", shortened(node.id)));
+  }
+}
+
 // How many shapes name each mesh file: only what is named twice is worth keeping.
 void count_meshes(Loader& loader, const Node& node) {
   for (const Node& child : node.children) {
@@ -155,6 +170,7 @@ Scene load(const std::string& text, const std::string& folder, const std::string
   loader.scene.notes = document.notes;
   loader.scene.content = document.content;
   collect_ids(loader, document.root);
+  check_aliases(loader);
   count_meshes(loader, document.root);
   try {
     load_elements(loader, options, name);

@@ -111,7 +111,7 @@ const Node& follow(const Loader& loader, const Node& node) {
     if (alias == loader.document.aliases.end()) break;
     if (steps > loader.document.aliases.size())
       fail(loader, node, "its <alias> goes in a circle; let one of them name an element");
-    id = alias->second;
+    id = alias->second.id;
   }
   const auto found = loader.ids.find(id);
   if (found == loader.ids.end())

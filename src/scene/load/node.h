@@ -22,10 +22,10 @@ struct Node {
 };
 
 struct Document {
-  Node root;                                   ///< <scene>, included files and all
-  std::vector<std::string> files;              ///< as they stand in messages
-  std::vector<std::string> folders;            ///< where relative names are looked for, in this order
-  std::map<std::string, std::string> aliases;  ///< <alias>: new name to id
+  Node root;                            ///< <scene>, included files and all
+  std::vector<std::string> files;       ///< as they stand in messages
+  std::vector<std::string> folders;     ///< where relative names are looked for, in this order
+  std::map<std::string, Node> aliases;  ///< <alias>: by the new name; its id is the other one
   std::vector<std::string> notes;
   std::vector<uint64_t> sums;  ///< checksums of the texts of the files
   uint64_t content = 0;        ///< checksum of all of them

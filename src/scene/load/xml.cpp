@@ -264,6 +264,15 @@ void read_path(Reader& r, const Source& s, const pugi::xml_node& xml, const Node
       fmt::format("{}: there is no folder {}: left out", place(r.document, node), folder.string()));
 }
 
+void read_alias(Reader& r, const Source& s, const pugi::xml_node& xml, const Node& node) {
+  const std::string& as = need(r, s, xml, node, "as");
+  const auto [known, added] = r.document.aliases.emplace(as, node);
+  if (!added)
+    fail(r, s, xml,
+         fmt::format("the name \"{}\" is taken already by an <alias> at {}:{}; rename one of them", shortened(as),
+                     r.document.files[known->second.file], known->second.line));
+}
+
 void read_children(Reader& r, const Source& s, const pugi::xml_node& xml, Node& into, int depth) {
   if (depth > max_depth)
     fail(r, s, xml, fmt::format("elements are nested more than {} deep; is an end tag missing?", max_depth));
@@ -277,7 +286,7 @@ void read_children(Reader& r, const Source& s, const pugi::xml_node& xml, Node& 
     } else if (node.tag == "path") {
       read_path(r, s, child, node);
     } else if (node.tag == "alias") {
-      r.document.aliases.emplace(need(r, s, child, node, "as"), node.id);
+      read_alias(r, s, child, node);
     } else {
       read_children(r, s, child, node, depth + 1);
       into.children.push_back(std::move(node));

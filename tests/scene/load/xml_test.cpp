@@ -191,6 +191,19 @@ TEST(References, WrongOnesAreErrors) {
               "circle");
 }
 
+// As in Mitsuba: a second name must be free, and be one of something.
+TEST(References, AliasesOfNothingAndOfTwoAreErrors) {
+  const std::string m = "<bsdf type='diffuse' id='m'/>", n = "<bsdf type='null' id='n'/>";
+  EXPECT_SAYS(error_of(m + "\n<alias id='k' as='l'/>"),
+              "test.xml:3: <alias id=\"k\">: nothing in the scene has the id \"k\"");
+  EXPECT_SAYS(error_of(m + "<alias as='l'/>"), "nothing in the scene has the id \"\"");
+  EXPECT_SAYS(error_of(m + n + "\n<alias id='m' as='n'/>"),
+              "test.xml:3: <alias id=\"m\">: the id \"n\" is taken already at test.xml:2");
+  EXPECT_SAYS(error_of(m + n + "<alias id='m' as='l'/>\n<alias id='n' as='l'/>"),
+              "test.xml:3: <alias>: the name \"l\" is taken already by an <alias> at test.xml:2");
+  EXPECT_EQ(error_of(m + "<alias id='l' as='k'/><alias id='m' as='l'/><shape type='sphere'><ref id='k'/></shape>"), "");
+}
+
 TEST(References, CyclesAreErrors) {
   EXPECT_SAYS(error_of("<bsdf type='twosided' id='a'><ref id='a'/></bsdf>"), "contains itself");
   EXPECT_SAYS(error_of("<bsdf type='mask' id='a'><ref id='b'/></bsdf><bsdf type='mask' id='b'><ref id='a'/></bsdf>"),
