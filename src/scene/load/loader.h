@@ -105,7 +105,8 @@ struct Params {
   Params(Loader& l, const Node& n) : loader(l), node(n), used(n.children.size(), false) {}
 };
 
-/// The child of one of these names (the last one, as Mitsuba 0.6 has it), or nullptr.
+/// The child of one of these names, or nullptr. Of several the last one, in version 0.x the last texture if there is
+/// one, as Mitsuba 0.6 has it.
 const Node* find(Params& params, std::initializer_list<const char*> names);
 bool has(Params& params, const char* name);
 double number(Params& params, const char* name, double otherwise);

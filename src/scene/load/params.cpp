@@ -49,6 +49,12 @@ double number_of(const Loader& loader, const Node& node) {
   return checked(loader, node, value_of(loader, node));
 }
 
+// Mitsuba 0.6 reads an element's numbers and colours first, wherever they stand, and then what is an object.
+bool overrules(const Params& params, const Node& later, const Node& earlier) {
+  const auto is_object = [](const Node& node) { return node.tag == "texture" || node.tag == "ref"; };
+  return !params.loader.document.old || is_object(later) || !is_object(earlier);
+}
+
 // Takes the next word of a list from its text; empty at the end.
 std::string_view take_word(std::string_view& text) {
   constexpr std::string_view between = ", \t\r\n";
@@ -129,10 +135,12 @@ const Node* find(Params& params, std::initializer_list<const char*> names) {
   for (size_t i = 0; i < params.node.children.size(); ++i) {
     const Node& child = params.node.children[i];
     if (std::find(names.begin(), names.end(), child.name) == names.end() || !is_parameter(child)) continue;
-    if (found != nullptr)
-      note(params.loader, params.node, fmt::format("\"{}\" is given more than once: the last one counts", child.named));
-    found = &child;
     params.used[i] = true;
+    const bool counts = found == nullptr || overrules(params, child, *found);
+    if (found != nullptr)
+      note(params.loader, params.node,
+           fmt::format("\"{}\" is given more than once: the {} counts", child.named, counts ? "last one" : "texture"));
+    if (counts) found = &child;
   }
   return found;
 }

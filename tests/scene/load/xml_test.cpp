@@ -395,14 +395,6 @@ TEST(Xml, MessagesAreShort) {
   }
 }
 
-TEST(Xml, NumbersThatAreTooLargeAreToldFromWords) {
-  const auto radius = [](const std::string& value) {
-    return error_of("<shape type='sphere'><float name='radius' value='" + value + "'/></shape>");
-  };
-  for (const char* huge : {"1e39", "1e3000", " +1e3000"}) EXPECT_SAYS(radius(huge), "is beyond the range of numbers");
-  for (const char* word : {"nan", "inf", "1e", "one", ""}) EXPECT_SAYS(radius(word), "is not a number");
-}
-
 TEST(Xml, MessagesAreOneLine) {
   EXPECT_EQ(error_of("<bsdf type='fo&#10;o' id='a&#13;b'/>").find_first_of("\n\r"), std::string::npos);
   EXPECT_EQ(error_of("<integrator type='$a&#10;b'/>").find_first_of("\n\r"), std::string::npos);
@@ -416,22 +408,6 @@ TEST(Xml, UnknownElementsAreErrorsOrNotes) {
   EXPECT_SAYS(error_of("<bsdf type='diffuse'><hide name='reflectance' value='1'/></bsdf>"), "<hide");
   EXPECT_TRUE(
       says(load_inside("<bsdf type='diffuse'><hide name='reflectance' value='1'/></bsdf>", lenient()).notes, "<hide"));
-}
-
-TEST(Xml, UnusedParametersAreNotedOnce) {
-  const Scene s = load_inside(
-      "<shape type='sphere'><boolean name='causticReceiver' value='true'/></shape>"
-      "<shape type='sphere'><boolean name='causticReceiver' value='true'/></shape>");
-  int count = 0;
-  for (const std::string& note : s.notes) count += note.find("\"causticReceiver\"") != note.npos;
-  EXPECT_EQ(count, 1);
-}
-
-TEST(Xml, LastOfTwoParametersCounts) {
-  const Scene s =
-      load_inside("<bsdf type='roughplastic'><float name='alpha' value='.2'/><float name='alpha' value='.3'/></bsdf>");
-  EXPECT_FLOAT_EQ(s.materials[0].alpha_u.value.x, 0.3f);
-  EXPECT_TRUE(says(s.notes, "more than once"));
 }
 
 }  // namespace
