@@ -294,6 +294,16 @@ void read_children(Reader& r, const Source& s, const pugi::xml_node& xml, Node& 
   }
 }
 
+void read_version(Document& document) {
+  const std::string* version = attribute(document.root, "version");
+  document.old = version != nullptr && version->starts_with("0.");
+  if (version != nullptr && version->find_first_of("0123456789") == 0) return;
+  const std::string wrong =
+      version ? fmt::format("\"{}\" is not a version", shortened(*version)) : "needs version=\"...\"";
+  document.notes.push_back(
+      one_line(fmt::format("{}: {}: read as a scene of version 3", place(document, document.root), wrong)));
+}
+
 // Mitsuba 0.6 has toWorld alone. Versions 2 and 3 have to_world, and read files of 0.x by new names, not by old rules.
 void heed_spelling(Reader& r, const Source& s) {
   const pugi::xml_node moved = r.root.find_node([](const pugi::xml_node& node) {
@@ -325,8 +335,7 @@ Document read_document(const std::string& text, const std::string& folder, const
   if (std::string_view(r.root.name()) != "scene")
     fail(r, source, r.root, "the file's outermost element should be <scene>; is this a Mitsuba scene?");
   document.root = make_node(r, source, r.root);
-  const std::string* version = attribute(document.root, "version");
-  document.old = version != nullptr && version->starts_with("0.");
+  read_version(document);
   heed_spelling(r, source);
   read_children(r, source, r.root, document.root, 0);
   for (const auto& [key, value] : defines)

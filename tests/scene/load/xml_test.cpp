@@ -410,5 +410,15 @@ TEST(Xml, UnknownElementsAreErrorsOrNotes) {
       says(load_inside("<bsdf type='diffuse'><hide name='reflectance' value='1'/></bsdf>", lenient()).notes, "<hide"));
 }
 
+// Mitsuba refuses them.
+TEST(Xml, SceneWithoutVersionIsTold) {
+  const auto notes = [](const std::string& attributes) {
+    return load_scene_text("<scene" + attributes + "><shape type='sphere'/></scene>", "", "a.xml").notes;
+  };
+  EXPECT_TRUE(says(notes(""), "a.xml:1: <scene>: needs version=\"...\": read as a scene of version 3"));
+  EXPECT_TRUE(says(notes(" version='new'"), "a.xml:1: <scene>: \"new\" is not a version: read as"));
+  EXPECT_FALSE(says(notes(" version='3.0.0'"), "version"));
+}
+
 }  // namespace
 }  // namespace ajar
