@@ -53,8 +53,9 @@ void read_film(Loader& loader, const Node& node, Camera& camera) {
   static constexpr const char* known[] = {"hdrfilm", "ldrfilm", "mfilm", "tiledhdrfilm"};
   if (std::find(std::begin(known), std::end(known), node.type) == std::end(known))
     note(loader, node, fmt::format("unknown film; supported: {}: read as hdrfilm", fmt::join(known, ", ")));
-  camera.width = integer(p, "width", 768, 1, max_film);
-  camera.height = integer(p, "height", 576, 1, max_film);
+  const bool is_one = node.type == "mfilm";  // as in Mitsuba: one pixel
+  camera.width = integer(p, "width", is_one ? 1 : 768, 1, max_film);
+  camera.height = integer(p, "height", is_one ? 1 : 576, 1, max_film);
   camera.crop_x = integer(p, "crop_offset_x", 0, 0, camera.width - 1);
   camera.crop_y = integer(p, "crop_offset_y", 0, 0, camera.height - 1);
   camera.crop_width = integer(p, "crop_width", camera.width - camera.crop_x, 1, camera.width - camera.crop_x);

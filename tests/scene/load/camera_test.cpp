@@ -189,7 +189,10 @@ TEST(Films, SizeAndCrop) {
   EXPECT_EQ(c.crop_y, 50);
   EXPECT_EQ(c.crop_width, 200);
   EXPECT_EQ(c.crop_height, 100);
-  for (const char* type : {"ldrfilm", "mfilm"}) EXPECT_EQ(error("<film type='" + std::string(type) + "'/>"), "");
+  EXPECT_EQ(read("<film type='ldrfilm'/>").camera.height, 576);
+  c = read("<film type='mfilm'/>").camera;
+  EXPECT_EQ(c.width, 1);
+  EXPECT_EQ(c.height, 1);
   EXPECT_TRUE(says(read("<film type='streakhdrfilm'/>").notes, "unknown film"));
   EXPECT_SAYS(error(film(0, 10)), "from 1 to 65536");
   EXPECT_SAYS(error(film(100000, 10)), "from 1 to 65536");
