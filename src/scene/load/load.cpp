@@ -58,7 +58,8 @@ void count_meshes(Loader& loader, const Node& node) {
 
 bool is_definition(const Node& node) {
   static constexpr const char* tags[] = {"spectrum", "rgb", "srgb", "blackbody", "sampler", "film", "rfilter"};
-  return std::find(std::begin(tags), std::end(tags), node.tag) != std::end(tags);
+  return std::find(std::begin(tags), std::end(tags), node.tag) != std::end(tags) ||
+         (node.tag == "animation" && !node.id.empty());
 }
 
 // What the names of 0.3 and 0.4 became.
@@ -135,11 +136,13 @@ void load_child(Loader& loader, const Node& node, bool& has_integrator) {
   } else if (is_definition(node)) {
     // read where it is named
   } else if (node.name.empty() || !node.children.empty()) {
-    unsupported(loader, node,
-                fmt::format("unknown element{}; supported: integrator, sensor, film, sampler, rfilter, bsdf, texture, "
-                            "spectrum, rgb, srgb, blackbody, shape, emitter, ref, alias, default, include, path",
-                            later_name(node.tag)),
-                "left out");
+    unsupported(
+        loader, node,
+        fmt::format("unknown element{}; supported: integrator, sensor, film, sampler, rfilter, bsdf, texture, "
+                    "spectrum, rgb, srgb, blackbody, shape, emitter, animation with an id, ref, alias, default, "
+                    "include, path",
+                    later_name(node.tag)),
+        "left out");
   }
 }
 

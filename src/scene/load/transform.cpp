@@ -138,6 +138,13 @@ bool has_transform(const Params& params, const char* name) {
                      [&](const Node& child) { return child.tag == "transform" && child.name == name; });
 }
 
+// Those of instances had a name of their own once.
+bool may_move(const Params& params, const Node& child, const char* name) {
+  if (child.tag != "animation" && child.tag != "ref") return false;
+  return child.name == name ||
+         (!params.loader.document.old && child.name == "animation" && params.node.type == "instance");
+}
+
 // The transform at the loader's time: between two keys, rotations are blended along the shortest way. Before the first
 // and after the last it rests.
 DMat4 animated(Loader& loader, const Node& node) {
@@ -178,12 +185,12 @@ DMat4 transform_of(const Loader& loader, const Node& node) {
 DMat4 to_world(Params& params, const char* name) {
   for (size_t i = 0; i < params.node.children.size(); ++i) {
     const Node& child = params.node.children[i];
-    const bool moves = child.name == name ||
-                       (!params.loader.document.old && child.name == "animation" && params.node.type == "instance");
-    if (child.tag != "animation" || !moves) continue;
+    if (!may_move(params, child, name)) continue;
+    const Node& meant = follow(params.loader, child);
+    if (meant.tag != "animation") continue;
     if (has_transform(params, name)) fail(params.loader, child, "stands beside a <transform>; one of them has to go");
     params.used[i] = true;
-    return animated(params.loader, child);
+    return animated(params.loader, meant);
   }
   const Node* node = find(params, {name});
   if (node == nullptr) return DMat4(1);

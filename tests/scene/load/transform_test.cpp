@@ -142,6 +142,26 @@ TEST(Animation, OfAnInstanceMayBeCalledAnimation) {
   EXPECT_FALSE(says(s.notes, "not used"));
 }
 
+// As of Mitsuba 3.9; hints tell of those alone that something moves by.
+TEST(Animation, MayBeSharedById) {
+  const std::string shared =
+      "<animation id='a'><transform time='0'/><transform time='1'><translate x='3'/></transform></animation>";
+  const std::string shape = "<shape type='disk'><ref name='to_world' id='a'/></shape>";
+  LoadOptions late;
+  late.time = 0.5;
+  const Scene s = load_inside(shape + shared + shape, late);
+  EXPECT_EQ(s.shapes.size(), 2u);
+  for (const Shape& moved : s.shapes) EXPECT_FLOAT_EQ(moved.to_world[3].x, 1.5f);
+  EXPECT_EQ(s.hints.last_time, 1);
+  EXPECT_FALSE(says(s.notes, "animation"));
+  EXPECT_LT(load_inside(shared + "<shape type='disk'/>").hints.last_time, 0);
+  EXPECT_SAYS(error_of(shared + "<shape type='disk'><transform name='to_world'/><ref name='to_world' id='a'/></shape>"),
+              "stands beside a <transform>");
+  EXPECT_SAYS(error_of("<bsdf type='diffuse' id='m'/><shape type='disk'><ref name='to_world' id='m'/></shape>"),
+              "should be a <transform>");
+  EXPECT_SAYS(error_of("<animation><transform time='0'/></animation>"), "<animation>: unknown element");
+}
+
 TEST(Animation, TurnsRatherThanSqueezes) {
   const std::string keys =
       "<transform time='0'><scale value='2'/></transform>"
