@@ -72,13 +72,25 @@ std::string known_parameters(const Reader& r) {
   return list.empty() ? "no parameter is known" : "known are " + list;
 }
 
-void parse(const Document& document, pugi::xml_document& xml, const Source& s, const std::string& name) {
+// A file has one outermost element; Mitsuba too reads the first alone.
+void tell_second(Document& document, const pugi::xml_node& first, const Source& s) {
+  for (pugi::xml_node next = first.next_sibling(); next; next = next.next_sibling()) {
+    if (next.type() != pugi::node_element) continue;
+    document.notes.push_back(one_line(fmt::format(
+        "{}:{}: <{}>: stands after the end of <{}>, which is all that is read of a file: left out",
+        document.files[s.file], line_at(s, next.offset_debug()), shortened(next.name()), shortened(first.name()))));
+    return;
+  }
+}
+
+void parse(Document& document, pugi::xml_document& xml, const Source& s, const std::string& name) {
   const pugi::xml_parse_result result = xml.load_buffer(s.text.data(), s.text.size());
   if (result.status == pugi::status_no_document_element || s.text.find_first_not_of(" \t\r\n") == std::string::npos)
     throw Error(fmt::format("{}: holds no XML element; a scene begins with <scene version=\"3.0.0\">", name));
   if (!result)
     throw Error(one_line(fmt::format("{}:{}: not well-formed XML: {}; repair what stands there", document.files[s.file],
                                      line_at(s, result.offset), result.description())));
+  tell_second(document, xml.document_element(), s);
 }
 
 // UTF-16, which some editors write, as UTF-8.
@@ -177,8 +189,20 @@ std::string substitute(Reader& r, const Source& s, const pugi::xml_node& node, c
   return out.append(rest);
 }
 
+// In XML an attribute stands once in an element; pugixml lets it pass.
+void check_once(const Reader& r, const Source& s, const pugi::xml_node& xml) {
+  std::vector<std::string_view> names;
+  for (const pugi::xml_attribute& a : xml.attributes()) names.emplace_back(a.name());
+  std::sort(names.begin(), names.end());
+  const auto twice = std::adjacent_find(names.begin(), names.end());
+  if (twice != names.end())
+    fail(r, s, xml,
+         fmt::format("has the attribute {} more than once; leave one of them out", shortened(std::string(*twice))));
+}
+
 Node make_node(Reader& r, const Source& s, const pugi::xml_node& xml) {
   if (++r.nodes > max_nodes) fail(r, s, xml, "the scene has more than eight million elements");
+  check_once(r, s, xml);
   Node node;
   node.file = s.file;
   node.line = line_at(s, xml.offset_debug());

@@ -318,6 +318,23 @@ TEST(Xml, NoSceneIsAnError) {
   EXPECT_SAYS(error(deep + "</scene>"), "nested more than 64 deep");
 }
 
+// What XML does not allow and its reader lets pass.
+TEST(Xml, WhatStandsTwiceIsTold) {
+  EXPECT_SAYS(error_of("\n<shape type='sphere' type='cube'/>"),
+              "test.xml:3: <shape>: has the attribute type more than once");
+  EXPECT_SAYS(
+      error_of("<shape type='disk'><transform name='to_world'><translate x='1' y='2' x='3'/></transform></shape>"),
+      "<translate>: has the attribute x more than once");
+  const Scene s =
+      load_scene_text("<scene version='3.0.0'><shape type='sphere'/></scene>\n<!-- --><scene/><scene/>", "", "a.xml");
+  EXPECT_TRUE(says(s.notes, "a.xml:2: <scene>: stands after the end of <scene>"));
+  EXPECT_FALSE(says(load_inside("<shape type='sphere'/><!-- --><shape type='cube'/>").notes, "stands after"));
+  const std::string two = write_file("two.xml", "<shape type='sphere'/>\n<shape type='cube'/>");
+  const Scene included = load_inside("<include filename='" + two + "'/>");
+  EXPECT_EQ(included.shapes.size(), 1u);
+  EXPECT_TRUE(says(included.notes, "two.xml:2: <shape>: stands after the end of <shape>"));
+}
+
 TEST(Xml, FilesThatAreNoneAreErrors) {
   const auto error = [](const std::string& path) -> std::string {
     try {
