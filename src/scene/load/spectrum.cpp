@@ -135,6 +135,18 @@ const Node* lit(Params& p) {
   return found;
 }
 
+// Where a regular spectrum begins and ends. range is how Mitsuba's manual has it.
+std::pair<double, double> range_of(Params& p) {
+  const std::string words = text(p, "range", "");
+  if (words.empty())
+    return {number(p, "wavelength_min", number(p, "lambda_min", 360)),
+            number(p, "wavelength_max", number(p, "lambda_max", 830))};
+  const auto ends = to_numbers(words);
+  if (!ends || ends->size() != 2)
+    fail(p.loader, p.node, fmt::format("range \"{}\" should be two wavelengths", words.substr(0, 80)));
+  return {(*ends)[0], (*ends)[1]};
+}
+
 // values and wavelengths in separate strings (Mitsuba 2, 3), or one <spectrum> of both (from 3.7 on)
 Rgb tabulated(Params& p, Colour kind) {
   if (const Node* list = find(p, {"value"}); list != nullptr && list->tag == "spectrum")
@@ -143,8 +155,7 @@ Rgb tabulated(Params& p, Colour kind) {
   if (!values || values->empty()) fail(p.loader, p.node, "needs <string name=\"values\" value=\"...\"/>");
   List list;
   if (p.node.type == "regular") {
-    const double low = number(p, "wavelength_min", number(p, "lambda_min", 360));
-    const double high = number(p, "wavelength_max", number(p, "lambda_max", 830));
+    const auto [low, high] = range_of(p);
     if (!(high > low) || values->size() < 2) fail(p.loader, p.node, "needs two values and a range of wavelengths");
     for (size_t i = 0; i < values->size(); ++i)
       list.emplace_back(low + (high - low) * double(i) / double(values->size() - 1), (*values)[i]);

@@ -247,6 +247,18 @@ TEST(Colour, TablesInOneSpectrum) {
                0.3, 0.3, 0.3, 1e-6);
 }
 
+// As Mitsuba's manual writes it.
+TEST(Colour, RangeOfARegularSpectrum) {
+  const auto regular = [](const std::string& range) {
+    return "<spectrum name='reflectance' type='regular'><string name='values' value='.1, .5'/>" + range + "</spectrum>";
+  };
+  const std::string ends = "<float name='wavelength_min' value='400'/><float name='wavelength_max' value='600'/>";
+  const Rgb expected = reflectance(regular(ends));
+  EXPECT_RGB(reflectance(regular("<string name='range' value='400, 600'/>")), expected.x, expected.y, expected.z, 1e-6);
+  EXPECT_SAYS(error_of("<bsdf type='diffuse'>" + regular("<string name='range' value='400'/>") + "</bsdf>"),
+              "range \"400\" should be two wavelengths");
+}
+
 TEST(Colour, ImpossibleOnesAreRepairedAloud) {
   Scene s = load_inside("<bsdf type='diffuse'><rgb name='reflectance' value='-0.1, 0.5, 2'/></bsdf>");
   EXPECT_RGB(s.materials[0].reflectance.value, 0, 0.5, 1, 1e-6);
