@@ -46,7 +46,30 @@ struct Layout {
   int colors = 3;
   int alpha = -1;
   bool normals = false;  // a map of normals
+  bool guessed = false;  // the file does not say which are the colours
 };
+
+// Whether a layer of the file has colours: NAME.R, NAME.G and NAME.B. The first that does is taken.
+bool take_layer(const OIIO::ImageSpec& spec, Layout& layout) {
+  for (int r = 0; r < spec.nchannels; ++r) {
+    std::string layer(spec.channel_name(r));
+    if (layer.empty() || layer.back() != 'R') continue;
+    layer.pop_back();
+    const int g = spec.channelindex(layer + "G"), b = spec.channelindex(layer + "B");
+    if (g < 0 || b < 0) continue;
+    layout.color[0] = r, layout.color[1] = g, layout.color[2] = b;
+    layout.alpha = spec.channelindex(layer + "A");
+    return true;
+  }
+  return false;
+}
+
+std::string names_of(const OIIO::ImageSpec& spec, const Layout& layout) {
+  std::string names;
+  for (const int c : layout.color)
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", std::string(spec.channel_name(c)));
+  return names;
+}
 
 Layout layout_of(const OIIO::ImageSpec& spec) {
   const int r = spec.channelindex("R"), g = spec.channelindex("G"), b = spec.channelindex("B");
@@ -58,9 +81,13 @@ Layout layout_of(const OIIO::ImageSpec& spec) {
              x >= 0 && y >= 0 && z >= 0) {
     layout.normals = true;
     layout.color[0] = x, layout.color[1] = y, layout.color[2] = z;
+  } else if (take_layer(spec, layout)) {
+    layout.guessed = true;
   } else if (spec.nchannels < 3 || layout.alpha == 1 || spec.channelindex("Y") >= 0) {
     layout.colors = 1;
     layout.color[0] = std::max(spec.channelindex("Y"), 0);
+  } else {
+    layout.guessed = true;  // the first three
   }
   return layout;
 }
@@ -219,6 +246,7 @@ Image load_image(const std::string& path, const ImageOptions& options) {
   Image image;
   image.name = path;
   image.width = spec.width, image.height = spec.height, image.channels = layout.colors;
+  if (layout.guessed) image.guessed = names_of(spec, layout);
   if (spec.format == OIIO::TypeDesc::UINT8) {
     for (int i = 0; i < 256; ++i) image.decode[i] = transfer(float(i) / 255);
     keep_bytes(image, layout, spec.nchannels, read_all<uint8_t>(path, *input, spec, OIIO::TypeDesc::UINT8));

@@ -83,6 +83,27 @@ TEST_F(ImageFile, ChannelsXyzAreNoGrey) {
   EXPECT_EQ(texel(image, 0, 0), Rgb(0.25f, 0.5f, 0.75f));
 }
 
+// As Blender writes them: a layer's colours, wherever they stand.
+TEST_F(ImageFile, OfLayersTheFirstWithColoursIsShown) {
+  const auto shown = [&](const std::vector<std::string>& names) {
+    const std::string path = (folder / "layers.exr").string();
+    OIIO::ImageSpec spec(1, 1, int(names.size()), OIIO::TypeDesc::FLOAT);
+    spec.channelnames = names;
+    const std::vector<float> values{0.1f, 0.2f, 0.3f, 0.4f, 0.5f};
+    const auto out = OIIO::ImageOutput::create(path);
+    EXPECT_TRUE(out->open(path, spec) && out->write_image(OIIO::TypeDesc::FLOAT, values.data()) && out->close());
+    return load_image(path);
+  };
+  const Image layers = shown({"Depth.Z", "View.Combined.A", "View.Combined.B", "View.Combined.G", "View.Combined.R"});
+  EXPECT_EQ(layers.guessed, "View.Combined.R, View.Combined.G, View.Combined.B");
+  EXPECT_EQ(texel(layers, 0, 0), Rgb(0.5f, 0.4f, 0.3f));
+  EXPECT_EQ(layers.alpha, std::vector<uint8_t>{51});
+  const Image parts = shown({"one", "three", "two"});
+  EXPECT_EQ(parts.guessed, "one, three, two");
+  EXPECT_EQ(texel(parts, 0, 0), Rgb(0.1f, 0.2f, 0.3f));
+  EXPECT_EQ(shown({"B", "G", "R", "a.B", "a.R"}).guessed, "");
+}
+
 TEST_F(ImageFile, GreyAlphaAndSixteenBit) {
   const Image grey = load_image(write<uint8_t>("g.png", 2, 1, 1, OIIO::TypeDesc::UINT8, {0, 188}));
   EXPECT_EQ(grey.channels, 1);

@@ -35,6 +35,7 @@ struct Image {
   float decode[256] = {};                   ///< value of each byte, linear
   size_t negative = 0, not_finite = 0;      ///< how many of its numbers were so in the file, and are 0
   std::string name;                         ///< for messages
+  std::string guessed;                      ///< the channels that are shown, where the file has no R, G, B
 };
 
 /// One texel, 0 <= x < width, 0 <= y < height.
@@ -96,8 +97,9 @@ struct ImageOptions {
 
 /// Reads any image that OpenImageIO reads. Files with alpha keep colours that are not multiplied by it as they stand.
 /// Colours of primaries other than those of Rec. 709, as EXR files may say, are converted unless raw. Negative numbers
-/// become 0 (unless raw), and with mend those that are not finite; both are counted. Throws Error where the file is
-/// missing, damaged or larger than 2 GiB decoded, and where a texel is not finite.
+/// become 0 (unless raw), and with mend those that are not finite; both are counted. Of a file without channels R, G
+/// and B the first layer with some of these names is shown, or else the first three channels. Throws Error where the
+/// file is missing, damaged or larger than 2 GiB decoded, and where a texel is not finite.
 Image load_image(const std::string& path, const ImageOptions& options = {});
 
 }  // namespace ajar

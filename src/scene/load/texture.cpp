@@ -162,6 +162,9 @@ void note_mended(Loader& loader, const Node& node, const Image& image) {
   };
   say("negative numbers", image.negative);
   say("numbers that are not finite", image.not_finite);
+  if (!image.guessed.empty())
+    note(loader, node,
+         fmt::format("{}: has no channels R, G and B: {} are shown in their place", image.name, image.guessed));
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
 // Textures and images.
+#include <OpenImageIO/imageio.h>
+
 #include "scene_text.h"
 
 namespace ajar {
@@ -25,6 +27,19 @@ TEST(TextureFile, TopRowIsAtVZero) {
   EXPECT_RGB(at(s, 0.75f, 0.25f), 0, 1, 0, 1e-6);
   EXPECT_RGB(at(s, 0.25f, 0.75f), 0, 0, 1, 1e-6);
   EXPECT_RGB(at(s, 0.75f, 0.75f), 1, 1, 1, 1e-6);
+}
+
+TEST(TextureFile, LayerThatIsShownIsTold) {
+  const std::string path = testing::TempDir() + "layers.exr";
+  OIIO::ImageSpec spec(1, 1, 3, OIIO::TypeDesc::FLOAT);
+  spec.channelnames = {"View.B", "View.G", "View.R"};
+  const float values[3] = {0.1f, 0.2f, 0.3f};
+  const auto out = OIIO::ImageOutput::create(path);
+  ASSERT_TRUE(out->open(path, spec) && out->write_image(OIIO::TypeDesc::FLOAT, values) && out->close());
+  const Scene s =
+      with("<texture name='reflectance' type='bitmap'><string name='filename' value='" + path + "'/></texture>");
+  EXPECT_RGB(at(s, 0.5f, 0.5f), 0.3, 0.2, 0.1, 1e-6);
+  EXPECT_TRUE(says(s.notes, "has no channels R, G and B: View.R, View.G, View.B are shown in their place"));
 }
 
 // An OBJ file counts v from below, and is turned when it is read: the upper row of the image is up.
