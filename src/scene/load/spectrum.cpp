@@ -76,14 +76,17 @@ List pairs_of_file(Loader& loader, const Node& node, const std::string& name) {
   if (path.empty()) fail(loader, node, missing_file(loader.document, node, name));
   count_file(loader, node, path);
   List list;
-  std::istringstream lines(read_text(path));
+  std::string bytes = read_text(path);
+  if (bytes.starts_with("\xef\xbb\xbf")) bytes.erase(0, 3);  // what Windows puts before UTF-8
+  std::istringstream lines(bytes);
   int number = 0;
   for (std::string line; std::getline(lines, line);) {
     ++number;
     line.erase(std::min(line.find('#'), line.size()));
     const auto pair = to_numbers(line);
     if (!pair || (!pair->empty() && pair->size() != 2))
-      fail(loader, node, fmt::format("{}:{}: a line should hold wavelength and value", path, number));
+      fail(loader, node,
+           fmt::format("{}:{}: \"{}\" should be a wavelength and a value", path, number, shortened(line)));
     if (!pair->empty()) list.emplace_back((*pair)[0], (*pair)[1]);
   }
   return list;

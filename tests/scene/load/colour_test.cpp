@@ -69,6 +69,8 @@ TEST(Colour, ReferenceToAColour) {
 TEST(Colour, FlatSpectrumIsGrey) {
   EXPECT_RGB(reflectance("<spectrum name='reflectance' value='300:0.42, 900:0.42'/>"), 0.42, 0.42, 0.42, 1e-6);
   EXPECT_RGB(reflectance("<spectrum name='reflectance' filename='flat.spd'/>"), 0.25, 0.25, 0.25, 1e-6);
+  const std::string marked = write_file("marked.spd", std::string("\xef\xbb\xbf") + "300 0.5\r\n900 0.5\r\n");
+  EXPECT_RGB(reflectance("<spectrum name='reflectance' filename='" + marked + "'/>"), 0.5, 0.5, 0.5, 1e-6);
   EXPECT_NEAR(luminance(radiance(flat("300:3, 900:3"))), 3, 2e-3);
 }
 
@@ -282,7 +284,8 @@ TEST(Colour, WrongOnesAreErrors) {
   EXPECT_SAYS(error("<spectrum name='reflectance' value='-5:1'/>"), "out of range");
   EXPECT_SAYS(error("<spectrum name='reflectance' filename='none.spd'/>"), "there is no file");
   EXPECT_SAYS(error("<spectrum name='reflectance' filename='empty.obj'/>"), "holds no wavelengths");
-  EXPECT_SAYS(error("<spectrum name='reflectance' filename='fragment.xml'/>"), "wavelength and value");
+  EXPECT_SAYS(error("<spectrum name='reflectance' filename='fragment.xml'/>"), "fragment.xml:1: \"<");
+  EXPECT_SAYS(error("<spectrum name='reflectance' filename='fragment.xml'/>"), "should be a wavelength and a value");
   EXPECT_SAYS(error("<blackbody name='reflectance' temperature='-1'/>"), "temperature");
   EXPECT_SAYS(error("<point name='reflectance' x='1'/>"), "is expected here");
 }
