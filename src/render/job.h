@@ -77,6 +77,7 @@ struct Sample {
                      ///< many samples of the pass it stands, where not all are traced
   Sampler sampler;
   bool teaches = false;  ///< what its subpaths see is recorded
+  uint32_t gathers = 0;  ///< rays of a final gather so far
   Rgb value{0};          ///< radiance found by the camera path, unfiltered
 };
 

@@ -119,6 +119,13 @@ void add_merged(const Merged& sums, int t, const Rgb& factor, Sample& sample, Sc
   }
 }
 
+// Numbers of the merges at the t-th camera vertex. Each ray of a final gather has others: whether one is looked at (K9)
+// must say nothing of the next, which is held against what both found.
+Sampler own_numbers(const Job& job, const Sample& sample, int t) {
+  const uint64_t place = 0xd15c + uint64_t(t) + (uint64_t(sample.gathers) << 32);
+  return make_sampler(SamplerKind::independent, hash(job.seed, place), Side::camera, sample.path, sample.pass);
+}
+
 Shares shares_of(const WalkOptions& walk) {
   Shares shares;
   shares.camera_first = walk.light_paths, shares.inner = walk.inner_share, shares.seen = walk.seen_share;
@@ -195,8 +202,7 @@ void join_merged(const Job& job, Sample& sample, Scratch& scratch) {
   std::vector<NearPhoton>& near = scratch.near;
   const float sum = find_near(job, camera, inner, radius, scratch);
   if (!near.empty() && !(sum <= 0)) {  // what is no number is counted when it is added
-    Sampler sampler = make_sampler(SamplerKind::independent, hash(job.seed, 0xd15c + uint64_t(t)), Side::camera,
-                                   sample.path, sample.pass);
+    Sampler sampler = own_numbers(job, sample, t);
     const Vec2 u = sampler.next2();
     const float adds = luminance(v.beta) * sum * few / full;
     const float tried = inner ? chance_to_try(adds, luminance(sample.value)) : 1;

@@ -18,6 +18,7 @@ void gather(const Job& job, Sample& sample, Scratch& scratch, const Walk& walk, 
   for (int i = 0; i < rays; ++i) {
     Walk ray = walk;
     camera.n = t;
+    ++sample.gathers;
     if (!scatter(job.walk, sample.sampler, camera, ray)) continue;
     ray.beta /= float(rays);
     follow(job, sample, scratch, ray, !camera[t - 1].delta, 1);
