@@ -274,7 +274,10 @@ std::vector<BoundedPiece> light_pieces(const Scene& scene, const LightTree& tree
   for (uint32_t i = 0; i < scene.lights.size(); ++i) {
     const size_t from = g.out.size();
     const Light& light = scene.lights[i];
-    const double watts = double(power(scene, i)) * double(light.sampling_weight);
+    // What next-event estimation is told to leave out, rays find: then light subpaths start there by its power.
+    const double asked = double(light.sampling_weight);
+    const bool starts_alone = !(asked > 0) && !has_no_extent(light.kind);
+    const double watts = double(power(scene, i)) * (starts_alone ? 1 : asked);
     if (is_infinite(light.kind))
       add_infinite(g, i, watts);
     else if (light.kind == LightKind::area)
@@ -291,7 +294,8 @@ std::vector<BoundedPiece> light_pieces(const Scene& scene, const LightTree& tree
     const bool uniform = tree.choice == LightChoice::uniform;
     for (size_t k = from; k < g.out.size(); ++k) {
       BoundedPiece& p = g.out[k];
-      p.bounds.weight = uniform ? (sum > 0 ? p.watts / sum * double(light.sampling_weight) : 0) : p.watts;
+      p.bounds.weight = uniform && sum > 0 ? p.watts / sum * asked : p.watts;
+      if (starts_alone) p.bounds.weight = 0;
     }
   }
   return std::move(g.out);

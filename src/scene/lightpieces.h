@@ -25,7 +25,8 @@ LightBounds join(const LightBounds& a, const LightBounds& b);
 
 /// Fills the tree's tilings and tiling.
 void make_tilings(const Scene& scene, LightTree& tree);
-/// All pieces of all lights, in order; those that give nothing have weight zero.
+/// All pieces of all lights, in order; those that give nothing have no watts, and those that next-event estimation is
+/// not to ask for no weight.
 std::vector<BoundedPiece> light_pieces(const Scene& scene, const LightTree& tree);
 
 }  // namespace ajar

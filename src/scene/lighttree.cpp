@@ -143,7 +143,8 @@ void set_sky(LightTree& t) {
                        (n.last == t.pieces.size() || light(n.last) != light(n.first));
     if (!whole) continue;
     const bool tiled = t.tiling[light(n.first)] != none;
-    t.sky.push_back({light(n.first), n.first, n.last, node, n.weight / t.nodes[0].weight, !tiled});
+    const float share = t.nodes[0].weight > 0 ? n.weight / t.nodes[0].weight : 1;
+    t.sky.push_back({light(n.first), n.first, n.last, node, share, !tiled});
   }
 }
 
@@ -227,7 +228,7 @@ LightTree make_light_tree(const Scene& scene, LightChoice choice) {
   for (const BoundedPiece& p : pieces) ++t.first_piece[p.piece.light + 1];
   for (size_t i = 0; i < scene.lights.size(); ++i) t.first_piece[i + 1] += t.first_piece[i];
   t.place.assign(pieces.size(), none);
-  std::erase_if(pieces, [](const BoundedPiece& p) { return !(p.bounds.weight > 0); });
+  std::erase_if(pieces, [](const BoundedPiece& p) { return !(p.watts > 0); });
   t.power_before = {0};
   if (pieces.empty()) return t;
   const auto finite = std::stable_partition(pieces.begin(), pieces.end(), [](auto& p) { return !p.infinite; });

@@ -143,6 +143,22 @@ TEST(Extreme, LightsWithoutAreaGiveNothing) {
   }
 }
 
+// What next-event estimation is not to ask for shines all the same, for all who send light from it.
+TEST(Extreme, LampsThatAreNotAskedForShine) {
+  Scene scene = stage(12);
+  const uint32_t ball = add_sphere(scene, {-0.5f, -0.2f, 0.2f}, 0.3f, add_diffuse(scene, Rgb(0.3f)));
+  scene.lights[add_area_light(scene, ball, Rgb(1, 6, 1))].sampling_weight = 0;
+  scene.lights[add_light(scene, LightKind::constant, Rgb(0.5f))].sampling_weight = 0;
+  finish(scene);
+  const Estimate right = measure(scene, statistical("path"), {8, 128, 1});
+  for (const char* integrator : {"bdpt", "guided-bdpt", "vpl", "plain-vpl"})
+    expect_same(measure(scene, statistical(integrator), {8, 32, 100}), right, integrator);
+  scene.lights.pop_back();  // which light alone does not see
+  finish(scene);
+  expect_same(measure(scene, statistical("light"), {8, 128, 200}), measure(scene, statistical("path"), {8, 128, 1}),
+              "light");
+}
+
 TEST(Extreme, NoLightNoShape) {
   Scene dark = furnished();
   dark.lights.clear();

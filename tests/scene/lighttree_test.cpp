@@ -168,11 +168,12 @@ TEST(LightTree, StandsExtremes) {
   finish(mixed);
   const LightTree& t = mixed.light_tree;
   EXPECT_EQ(place_of(t, 3, none), none);
-  EXPECT_EQ(place_of(t, 6, none), none);
+  EXPECT_NE(place_of(t, 6, none), none);  // light subpaths start there
   EXPECT_NE(place_of(t, 5, none), none);
   for (uint32_t i = 0; i < 200; ++i) {
     float u = kit::random2(i, 6).x, pdf;
     uint32_t place;
+    EXPECT_EQ(choice_pdf(t, 0, receiver(i), place_of(t, 6, none)), 0);
     if (choose(t, 0, receiver(i), u, place, pdf)) {
       EXPECT_TRUE(pdf > 0 && pdf <= 1 && u < 1);
     }

@@ -16,6 +16,12 @@ inline bool is_infinite(LightKind kind) {
          kind == LightKind::sun;
 }
 
+/// Whether no ray finds it: a place or a direction alone.
+inline bool has_no_extent(LightKind kind) {
+  return kind == LightKind::point || kind == LightKind::spot || kind == LightKind::projector ||
+         kind == LightKind::directional;
+}
+
 /// A mesh light that is one rectangle: corner + a x + b y, 0 <= a, b <= 1, shines to the side of cross(x, y).
 struct Rectangle {
   Vec3 corner{0}, x{0}, y{0};
@@ -28,7 +34,7 @@ struct Light {
   LightKind kind = LightKind::area;
   Slot radiance{1.0f};  ///< area, constant, sun: radiance [W/(m^2 sr)]; directional: irradiance on a perpendicular
                         ///< plane; point, spot: intensity [W/sr]; projector: the same along its axis, see plane
-  float sampling_weight = 1;    ///< the user's factor on the chance of being chosen
+  float sampling_weight = 1;    ///< the user's factor on the chance of being chosen; 0: rays alone find it
   uint32_t shape = none;        ///< area: index into Scene::shapes
   uint32_t environment = none;  ///< envmap: index into Scene::environments
   Mat4 to_world{1};             ///< envmap, spot, projector: orientation (the latter two: position too)

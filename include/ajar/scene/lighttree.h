@@ -62,7 +62,7 @@ struct LightTree {
   LightChoice choice = LightChoice::tree;
   float infinity_scale = 1;           ///< of the importance of what is infinite far away, against that of lamps
   std::vector<LightNode> nodes;       ///< node 0 is the root; empty: nothing shines
-  std::vector<LightPiece> pieces;     ///< in the order of the leaves; those of weight zero are left out
+  std::vector<LightPiece> pieces;     ///< in the order of the leaves; those that give nothing are left out
   std::vector<double> power_before;   ///< watts of the pieces before each, and of all: light subpaths start by it
   std::vector<uint32_t> first_piece;  ///< of every light, in `place`
   std::vector<uint32_t> place;        ///< of every part of every light: its place in the order; none if left out
