@@ -74,7 +74,7 @@ void check_next_event(const RenderOptions& o, const Scene& scene) {
   if (o.integrator != "path" && o.integrator != "guided-path")
     throw Error(fmt::format("--no-next-event: {} needs it; take path or guided-path", o.integrator));
   for (const Light& light : scene.lights)
-    if (light.kind == LightKind::point || light.kind == LightKind::spot || light.kind == LightKind::directional)
+    if (has_no_extent(light.kind))
       throw Error("--no-next-event: the scene has lights without extent, which no ray can hit; leave it out");
 }
 

@@ -218,6 +218,16 @@ TEST_F(Outputs, StrategiesAreOfTheLastRenderAlone) {
   EXPECT_TRUE(fs::exists("t/s1t2.exr"));
 }
 
+// What no ray hits would be black.
+TEST_F(Outputs, LightsWithoutExtentNeedNextEventEstimation) {
+  const std::string text = kit::bytes_of("box.xml"), end = "</scene>";
+  for (const char* type : {"point", "spot", "projector", "directional"}) {
+    const std::string light = "<emitter type='" + std::string(type) + "'/>";
+    write_text("box.xml", text.substr(0, text.rfind(end)) + light + end);
+    EXPECT_NE(error_of({"--integrator", "path", "--no-next-event"}).find("without extent"), std::string::npos) << type;
+  }
+}
+
 TEST_F(Outputs, StrategiesOfLongPathsHaveNoImage) {
   run({"--max-depth", "-1", "--techniques", "t"});
   int longest = 0;
