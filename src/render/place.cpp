@@ -147,17 +147,25 @@ void measure_lights(const Job& job, std::vector<Scratch>& scratches, Vpls& vpls)
   vpls.least = find_threshold(std::move(values), vpls.most);
 }
 
+// The tile with which a splat goes to the film: that of a pixel by lot. So of a pass that is not finished as large a
+// share of the splats is in the image as of the pixels.
+uint32_t chunk_of_splat(const Film& film, uint64_t key, size_t number) {
+  const uint64_t pixel = hash(key, number) % film.pixels(), width = uint64_t(film.width);
+  return uint32_t(pixel / width / tile) * uint32_t(tiles_x(film)) + uint32_t(pixel % width / tile);
+}
+
 // Traces the light subpaths of a pass and keeps its lights.
-void trace_vpls(const Job& job, uint32_t pass, std::vector<Scratch>& scratches, Vpls& vpls) {
+void trace_vpls(const Job& job, const Film& film, uint32_t pass, std::vector<Scratch>& scratches, Vpls& vpls) {
   constexpr uint64_t stream = 0x76706c;
   std::vector<Part> parts = trace_parts(job, stream, pass, scratches);
   clear(vpls.store);
   for (std::vector<Splat>& list : vpls.splats) list.clear();
+  size_t splats = 0;
+  const uint64_t key = hash(hash(job.seed, 0x5b1a7), pass);
   for (uint32_t i = 0; i < parts.size(); ++i) {
     if (vpls.least > 0) select_lights(job, pass, i, parts[i].store);
     append(vpls.store, parts[i].store);
-    std::vector<Splat>& list = vpls.splats[i * vpls.splats.size() / parts.size()];
-    list.insert(list.end(), parts[i].splats.begin(), parts[i].splats.end());
+    for (const Splat& s : parts[i].splats) vpls.splats[chunk_of_splat(film, key, splats++)].push_back(s);
   }
   put_in_order(*job.scene, vpls.store);
   std::vector<float> near;
@@ -223,7 +231,7 @@ void place_vpls(const Job& job, const Film& film, std::vector<Scratch>& scratche
     forget_counts(scratches);
   }
   if (vpls.pass != pass) {
-    trace_vpls(job, pass, scratches, vpls);
+    trace_vpls(job, film, pass, scratches, vpls);
     if (film.chunks > 0) forget_counts(scratches);  // a pass that is gone on with
   }
   vpls.pass = pass;

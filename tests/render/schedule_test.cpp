@@ -96,6 +96,41 @@ TEST(Schedule, MostlyCausticsGetMoreLightSubpathsThanPixels) {
       << "rare and bright; splats that counted once each would make it thrice";
 }
 
+// Of a first pass whose time is over after a few tiles, splats count by the share of its pixels. A lamp in glass: all
+// of its light is splatted where it comes out.
+TEST(Schedule, SplatsOfAPassAtWorkAreAsManyAsItsPixels) {
+  Scene scene;
+  set_camera(scene, {0, 0.8f, 3.5f}, {0, -0.5f, 0}, 22, 400, 400);
+  add_open_room(scene);
+  Material glass;
+  glass.kind = MaterialKind::dielectric;
+  add_sphere(scene, {0, 0.5f, 0}, 0.4f, add_material(scene, glass));
+  add_area_light(scene, add_sphere(scene, {0, 0.5f, 0}, 0.2f, add_diffuse(scene, Rgb(0))), Rgb(20));
+  finish(scene);
+  const Accel accel(scene);
+  RenderOptions o = options_of("plain-vpl", 2);
+  o.max_depth = 4;
+  const auto light_of = [&](const auto& sums) {
+    double sum = 0;
+    for (const auto& s : sums) sum += double(luminance(s));
+    return sum;
+  };
+  const Film whole = rendered(scene, accel, o).film;
+  const double right = light_of(whole.splat_sum) / whole.passes;
+  o.cpu_seconds = 1e6;  // so that the first tiles are few
+  double found = 0;
+  constexpr int seeds = 24;
+  for (o.seed = 0; o.seed < seeds; ++o.seed) {
+    RenderState state = start_render(scene, o);
+    render(scene, accel, o, state, [](const RenderState&) { return false; });
+    ASSERT_LE(state.film.chunks, 32u);
+    const double share = double(state.film.chunks) / chunk_count(state.film);
+    found += light_of(state.film.splat) / double(state.film.pixels()) / share / seeds;
+  }
+  EXPECT_GT(right, 0);
+  EXPECT_NEAR(found / right, 1, 0.7);
+}
+
 // What young fields need is so many paths, however many pixels there are.
 TEST(Schedule, LargeImagesAreTaughtByASmallShareOfTheirPixels) {
   const auto shares = [](int width, int height, uint32_t train = 0) {
