@@ -112,7 +112,9 @@ bool guide_direction(const Fields* fields, Vec2 u, EmissionSample& out) {
   if (u.x < mix) {
     u.x = std::min(u.x / mix, one_minus_epsilon);
     out.direction = sample(*fields, fields->w, cell, out.point.p, u, pdf_field);
-    if (!(glm::dot(out.direction, out.point.n) > 0)) return false;
+    // Through a portal a direction may fall below the cell's horizon, where the field has no density, and still leave
+    // the lamp, whose normal is another.
+    if (!(pdf_field > 0) || !(glm::dot(out.direction, out.point.n) > 0)) return false;
   } else {
     u.x = std::min((u.x - mix) / (1 - mix), one_minus_epsilon);
     out.direction = make_frame(out.point.n).to_world(to_cosine_hemisphere(u));
