@@ -49,8 +49,10 @@ double light_paths_of(const Film& film, uint32_t from, uint32_t count, float rat
 // Measured (docs/results/joins.md).
 constexpr double noisy = 0.25, quiet = 0.15, shining = 0.01, twice = 0.25;
 
-float light_rate(const Film& film, const Ledger& ledger) {
+// What merges has half as many light subpaths as pixels, as many where caustics shine (docs/results/merging.md).
+float light_rate(const Film& film, const Ledger& ledger, bool merges) {
   const double caustics = ledger.caustics / total_energy(ledger);
+  if (merges) return caustics > shining ? RenderState::caustic_light : RenderState::noisy_light;
   if (caustics > shining) {
     const double rate = std::exp2(std::floor(std::log2(2 * caustics / twice)));
     return std::clamp(float(rate), RenderState::caustic_light, RenderState::most_light);  // (J5)
@@ -85,17 +87,18 @@ bool is_due(const Film& film, uint32_t first) {
 bool fields_know(const RenderState& state) { return state.learning.fields.generation >= blind_generations; }
 
 // How many light subpaths are traced, and how much their joins may cost. Where camera vertices choose among those of
-// many tiles, a few are as good as many. While fields know little, all of them teach; a photon map has use for all.
-void plan_light(bool joined, RenderState& state, Pass& pass) {
+// many tiles, a few are as good as many. While fields know little, all of them teach.
+void plan_light(bool merges, RenderState& state, Pass& pass) {
   const Film& film = state.film;
   Job& job = pass.job;
+  const bool chosen = job.guided && job.light_half && !job.vpls;
   const bool looks = !pass.plain && is_due(film, 1);
-  if (joined && looks && film.passes >= 8) state.light_rate = light_rate(film, state.stats.ledger);
+  if (chosen && looks && film.passes >= 8) state.light_rate = light_rate(film, state.stats.ledger, merges);
   if (const float effort = looks ? effort_for(state.stats.ledger) : 0; effort > 0) state.effort = effort;
   job.effort = state.effort;
   if (job.guided && job.light_half)
     job.walk.seen_share = std::max(most_seen_joins * sqr(double(state.effort)), least_seen_joins);
-  job.light_rate = joined && !pass.plain && fields_know(state) ? state.light_rate : 1;
+  job.light_rate = chosen && !pass.plain && fields_know(state) ? state.light_rate : 1;
   job.walk.light_paths = film.splats ? light_paths_of(film, 0, chunk_count(film), job.light_rate) : 0;
 }
 
@@ -138,7 +141,7 @@ Merging merging_of(const Job& job, float radius, const Film& film) {
   const uint32_t count = std::min(equal_chunks(film, batch_chunks), chunk_count(film) - film.chunks);
   const float pixels = radius * std::pow(float(film.passes + 1), -1.0f / 6);
   Merging m;
-  m.paths = light_paths_of(film, film.chunks, count, 1);
+  m.paths = light_paths_of(film, film.chunks, count, job.light_rate);
   m.paths /= share_of(job, film);
   m.inner = merge_inner;
   const CameraRay ray = generate(camera, Vec2(camera.width, camera.height) * 0.5f, Vec2(0.5f));
@@ -168,12 +171,11 @@ void plan_vpls(const RenderState& state, Job& job) {
 Pass plan_pass(const Job& job, const RenderOptions& options, RenderState& state) {
   const Film& film = state.film;
   const bool merges = merges_still(options, state.plain);
-  const bool joined = job.guided && job.light_half && !merges && !job.vpls;
   Pass pass{job, may_leave_out(options) && state.plain.taken};
-  plan_light(joined, state, pass);
+  plan_light(merges, state, pass);
   balance_pass(state, pass);
   adapt_pass(options, state, pass);
-  if (merges) pass.job.walk.merging = merging_of(job, options.merge_radius, film);
+  if (merges) pass.job.walk.merging = merging_of(pass.job, options.merge_radius, film);
   if (job.vpls) plan_vpls(state, pass.job);
   if (pass.plain) pass.job = plainly(pass.job);
   pass.chunks = pass.job.light_half ? equal_chunks(film, merges ? batch_chunks : pool_chunks)

@@ -80,6 +80,20 @@ TEST(Schedule, CausticsGetAllLightSubpaths) {
   EXPECT_EQ(state.light_rate, RenderState::caustic_light);
 }
 
+// What merges: half as many light subpaths as pixels, but as many where much of the light is caustics.
+TEST(Schedule, MergingHasHalfTheLightSubpaths) {
+  LoadOptions load;
+  load.defines = {{"resx", "48"}, {"resy", "36"}};
+  const Scene mirrors = load_scene(source_path("scenes/mirrors/mirrors.xml"), load);
+  EXPECT_EQ(rendered(mirrors, Accel(mirrors), options_of("guided-vcm", 10)).light_rate, RenderState::caustic_light);
+  Scene scene = stage(48);
+  finish(scene);
+  const RenderState state = rendered(scene, Accel(scene), options_of("guided-vcm", 20));
+  EXPECT_EQ(state.light_rate, RenderState::noisy_light);
+  const double light_paths = (blind_generations + 20 * double(RenderState::noisy_light)) * double(state.film.pixels());
+  EXPECT_NEAR(double(state.stats.counters.light_paths), light_paths, 0.02 * light_paths);
+}
+
 // Where most of the light is caustics there are several for each pixel, and their splats count the less.
 TEST(Schedule, MostlyCausticsGetMoreLightSubpathsThanPixels) {
   LoadOptions load;
