@@ -30,8 +30,8 @@ struct RenderState {
   Pyramid pyramid;  ///< filled when RenderOptions::techniques
   RenderStats stats;
   Learning learning;  ///< of guided integrators
-  /// Light subpaths for each pixel, a power of two, where camera subpaths join vertices of a whole tile. Looked at anew
-  /// after 8, 16, 32 ... passes.
+  /// Light subpaths for each pixel, a power of two, where camera subpaths choose among those of many, or merge. Looked
+  /// at anew after 8, 16, 32 ... passes.
   float light_rate = noisy_light;
   static constexpr float least_light = 0.125f, usual_light = 0.25f, noisy_light = 0.5f, caustic_light = 1,
                          most_light = 4;

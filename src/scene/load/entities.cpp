@@ -96,7 +96,7 @@ void read_entity(Cursor& in, Expansion& e) {
 
 // Up to the end of the DOCTYPE, where there is one.
 void read_doctype(Cursor& in, Expansion& e) {
-  in.take("\xef\xbb\xbf");
+  in.rest = without_mark(in.rest);
   for (in.skip_blanks(); in.skip_comment(); in.skip_blanks()) {
   }
   if (!in.take("<!DOCTYPE")) return;
@@ -114,11 +114,10 @@ void read_doctype(Cursor& in, Expansion& e) {
 void read_entity_file(Expansion& e, const std::string& name, Entity& entity) {
   const std::filesystem::path path = std::filesystem::path(e.folder) / entity.file;
   try {
-    entity.text = read_text(path.string());
+    entity.text = without_mark(read_text(path.string()));
   } catch (const Error& error) {
     e.fail(name, fmt::format("cannot be put in: {}", error.what()));
   }
-  if (entity.text.starts_with("\xef\xbb\xbf")) entity.text.erase(0, 3);
   entity.is_read = true;
 }
 

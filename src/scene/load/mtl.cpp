@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cursor.h"
+#include "node.h"
 
 namespace ajar {
 namespace {
@@ -150,7 +151,7 @@ bool read_statement(Cursor& in, std::string_view keyword, MtlMaterial& m) {
 
 MtlFile parse_mtl(std::string_view text, const std::string& name) {
   MtlFile out;
-  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  text = without_mark(text);
   Cursor in{text.data(), text.data() + text.size(), name};
   for (; in.p != in.end; in.skip_line()) {
     if (in.at_end()) continue;

@@ -79,6 +79,11 @@ std::string one_line(std::string text) {
   return text;
 }
 
+std::string_view without_mark(std::string_view text) {
+  constexpr std::string_view mark = "\xef\xbb\xbf";
+  return text.starts_with(mark) ? text.substr(mark.size()) : text;
+}
+
 std::string shortened(const std::string& text) {
   constexpr size_t most = 80;
   return text.size() > most ? fmt::format("{}...", std::string_view(text).substr(0, most)) : text;

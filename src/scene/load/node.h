@@ -41,6 +41,8 @@ std::string snake_case(const std::string& name);
 std::string lower(std::string text);
 /// Whole file as bytes. Throws Error with the reason.
 std::string read_text(const std::string& path);
+/// Without the byte order mark that Windows puts before UTF-8.
+std::string_view without_mark(std::string_view text);
 /// Adds the text of a file to Document::sums and Document::content.
 void count_text(Document& document, const std::string& text);
 /// A message without line breaks, whatever was quoted in it.

@@ -10,6 +10,7 @@
 #include "ajar/core/error.h"
 #include "ajar/core/sampler.h"
 #include "cursor.h"
+#include "node.h"
 
 namespace ajar {
 namespace {
@@ -251,7 +252,7 @@ ObjFile scan_obj(std::string_view text, const std::string& name) {
   std::unordered_map<std::string, uint32_t> known{{"", 0}};
   uint32_t material = 0;
   bool begins = true;  // another group, with the next face
-  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  text = without_mark(text);
   out.v.reserve(text.size() / 128), out.corners.reserve(text.size() / 32);
   Cursor in{text.data(), text.data() + text.size(), name};
   for (; in.p != in.end; in.skip_line()) {

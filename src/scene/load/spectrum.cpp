@@ -76,9 +76,7 @@ List pairs_of_file(Loader& loader, const Node& node, const std::string& name) {
   if (path.empty()) fail(loader, node, missing_file(loader.document, node, name));
   count_file(loader, node, path);
   List list;
-  std::string bytes = read_text(path);
-  if (bytes.starts_with("\xef\xbb\xbf")) bytes.erase(0, 3);  // what Windows puts before UTF-8
-  std::istringstream lines(bytes);
+  std::istringstream lines{std::string(without_mark(read_text(path)))};
   int number = 0;
   for (std::string line; std::getline(lines, line);) {
     ++number;
@@ -146,7 +144,7 @@ std::pair<double, double> range_of(Params& p) {
             number(p, "wavelength_max", number(p, "lambda_max", 830))};
   const auto ends = to_numbers(words);
   if (!ends || ends->size() != 2)
-    fail(p.loader, p.node, fmt::format("range \"{}\" should be two wavelengths", words.substr(0, 80)));
+    fail(p.loader, p.node, fmt::format("range \"{}\" should be two wavelengths", shortened(words)));
   return {(*ends)[0], (*ends)[1]};
 }
 
