@@ -20,7 +20,7 @@ row = []
 for way in ('path', 'guided-path', 'bdpt', 'guided-bdpt', 'guided-vcm'):
     out = json.load(open(f'{folder}/{way}.json'))
     cpu = sum(out['cpu_seconds'][k] for k in ('trace', 'learn', 'rebuild'))
-    row.append((1e9 * cpu / sum(out['rays'].values()), 1e6 * cpu / out['spp'] / out['options']['width'] / out['options']['height']))
+    row.append((1e9 * cpu / sum(out['rays'].values()), 1e6 / out['samples_per_cpu_second']))
 name = os.path.basename(os.path.dirname(file))
 print(f'| {name} | ' + ' | '.join(f'{ray:.0f} ns, {ray / row[0][0]:.2f}, {sample:.2f} us a sample' for ray, sample in row) + ' |', flush=True)
 TABLE

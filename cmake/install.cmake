@@ -9,6 +9,9 @@ install(DIRECTORY include/ajar DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 
 file(WRITE ${PROJECT_BINARY_DIR}/ajarConfig.cmake [[
 include(${CMAKE_CURRENT_LIST_DIR}/dependencies.cmake)
+if(DEFINED ajar_FOUND AND NOT ajar_FOUND)
+  return()
+endif()
 include(${CMAKE_CURRENT_LIST_DIR}/ajarTargets.cmake)
 ]])
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/ajarConfigVersion.cmake COMPATIBILITY SameMinorVersion)

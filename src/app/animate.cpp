@@ -266,7 +266,7 @@ void check_outputs(const Work& w) {
 void write_film(const Work& w) {
   const AnimateArguments& a = w.arguments;
   if (a.video.empty()) return;
-  make_video(w.png, w.shooting.timeline.frames, a.fps.value_or(24), a.video);
+  make_video(w.png, w.shooting.timeline.frames, a.fps.value_or(usual_fps), a.video);
   if (!a.quiet) say(stdout, "{}\n", a.video);
 }
 
@@ -296,7 +296,7 @@ Work prepare(const AnimateArguments& a) {
   w.pattern = w.png = parse_pattern("-o", a.out);
   w.png.after.replace(w.png.after.size() - 4, 4, ".png");
   if (a.fps && a.video.empty()) throw Error("--fps: is of a film; add --video OUT.mp4, or leave it out");
-  if (!a.video.empty()) check_video(a.video);
+  if (!a.video.empty()) check_video(a.video, a.fps.value_or(usual_fps));
   const FrameRange& r = w.shooting.timeline.frames;
   // Finds out what times there are, and that both ends can be loaded, and what is between: there a parameter that is
   // to be whole may not be.

@@ -1,6 +1,7 @@
 #include "arguments.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -108,7 +109,8 @@ bool is_exr(const std::string& path) { return extension_of(path) == ".exr"; }
 std::string place_of(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code error;
-  const fs::path place = fs::weakly_canonical(fs::absolute(path, error), error);
+  fs::path place = fs::weakly_canonical(fs::absolute(path, error), error);
+  if (place.has_relative_path() && !place.has_filename()) place = place.parent_path();  // of a folder: out/
   return place.empty() ? path : place.string();
 }
 

@@ -63,8 +63,10 @@ std::optional<Carried> find_carried(const std::string& folder, const std::string
 std::vector<FrameFigures> measure(const FramePattern& pattern, const Timeline& timeline,
                                   const std::optional<FramePattern>& reference, const std::string& key = {});
 
-/// Throws Error where the name is none for a film, or ffmpeg is not installed.
-void check_video(const std::string& out);
+/// Frames a second, where the user names none.
+inline constexpr double usual_fps = 24;
+/// Throws Error where the name is none for a film, or not for one of so many frames a second, or ffmpeg is not installed.
+void check_video(const std::string& out, double fps);
 /// Makes a film of the PNG files of a range. Throws Error, and Interrupted.
 void make_video(const FramePattern& png, const FrameRange& frames, double fps, const std::string& out);
 

@@ -65,11 +65,19 @@ void note_integrator(const RenderArguments& a, const Run& run) {
   say(stderr, "ajar: note: the scene asks for {}; --plan auto chooses what suits it\n", run.options.integrator);
 }
 
+// A checkpoint of an earlier render that would be lost.
+void note_checkpoint(const RenderArguments& a) {
+  std::error_code unknown;
+  if (a.quiet || a.checkpoint.empty() || !a.resume.empty() || !std::filesystem::exists(a.checkpoint, unknown)) return;
+  say(stderr, "ajar: note: {} is begun anew; --resume {} would go on from it\n", a.checkpoint, a.checkpoint);
+}
+
 bool has_samples(const Film& film) { return film.passes > 0 || film.chunks > 0; }
 
 std::string interruption(const RenderArguments& a, const Film& film) {
   if (!has_samples(film))
-    return fmt::format("interrupted before the first sample that is in the image; {} is not written", a.out);
+    return fmt::format("interrupted before the first sample that is in the image; {} not written",
+                       a.checkpoint.empty() ? a.out + " is" : fmt::format("{} and {} are", a.out, a.checkpoint));
   const std::string rest = fmt::format("; {} has what was done", a.out);
   if (film.passes > 0) return fmt::format("interrupted after {:.1f} spp{}", spp_of(film), rest);
   const double share = 1 - double(film.chunks) / chunk_count(film);
@@ -150,9 +158,10 @@ void trace(const RenderArguments& a, const Scene& scene, const Accel& accel, Run
 void write_all(const RenderArguments& a, const Scene& scene, const Accel& accel, Run& run, RenderState& state,
                const Log& log) {
   std::vector<std::function<void()>> writes;
-  if (!a.checkpoint.empty())
+  const bool begun = has_samples(state.film) || !run.interrupted;  // else what is there is worth more
+  if (!a.checkpoint.empty() && begun)
     writes.emplace_back([&] { save_checkpoint(a.checkpoint, checkpoint_key(run, state.film), state); });
-  if (!a.save_fields.empty() && is_guided(run.options.integrator))
+  if (!a.save_fields.empty() && is_guided(run.options.integrator) && begun)
     writes.emplace_back([&] {
       save_fields(a.save_fields, stored_fields(scene, state.learning, passes_drawn(state.film, state.adaptive)));
     });
@@ -200,6 +209,7 @@ void run_render(RenderArguments a) {
   run.accel_bytes = accel.bytes();
   catch_stop();
   note_integrator(a, run);
+  note_checkpoint(a);
   if (run.planned) plan_run(a, scene, run);
   run.light_choice = light_choice_of(a, run.options.integrator);
 

@@ -97,11 +97,8 @@ bool names_none(const RenderArguments& a, const Scene& scene) {
   return a.integrator.empty() && (a.plan == "auto" || (a.plan.empty() && scene.hints.integrator.empty()));
 }
 
-bool brings_fields(const RenderArguments& a, const Scene& scene) {
-  return names_none(a, scene) && !a.load_fields.empty();
-}
-
-// What the user names, else what the plan's parts make, else what the scene names.
+// What the user names, else what the plan's parts make, else what the scene names. What is planned is chosen later; it
+// may be what has the most options.
 void choose_integrator(const RenderArguments& a, const Scene& scene, RenderOptions& o) {
   if (!a.integrator.empty()) {
     check_integrator(a.integrator);
@@ -109,7 +106,7 @@ void choose_integrator(const RenderArguments& a, const Scene& scene, RenderOptio
   } else if (lists_parts(a)) {
     if (a.guide != "both") throw Error("--guide: the parts of --plan say what is guided; leave it out");
     apply_parts(split(a.plan), o);
-  } else if (a.plan == "all" || brings_fields(a, scene)) {
+  } else if (a.plan == "all" || names_none(a, scene)) {
     o.integrator = "guided-bdpt";
   } else if (is_integrator(scene.hints.integrator)) {
     o.integrator = scene.hints.integrator;
@@ -161,6 +158,7 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
       "that time takes away");
   c->add_option("--aov", a->features, "more channels in the EXR: albedo,normal,position,variance")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->check(CLI::IsMember({"albedo", "normal", "position", "variance"}));
   c->add_option("--reference", a->reference, "image to measure the error against in the log");
   c->add_option("--log", a->log, "JSON lines at log-spaced times; with --resume they are added");
@@ -226,20 +224,33 @@ void check_plan(const RenderArguments& a) {
     throw Error("--plan auto: a checkpoint goes on with the integrator that it began with; leave out --plan");
 }
 
-// How next-event estimation chooses among them.
-void choose_lights(const RenderArguments& a, Scene& scene, RenderOptions& o) {
+void check_light_choice(const RenderArguments& a, const std::string& integrator) {
   if (a.no_next_event && !a.light_choice.empty())
     throw Error(
         fmt::format("--light-choice {}: with --no-next-event no light is chosen; leave it out", a.light_choice));
-  o.learn_lights = a.light_choice == "learned" && !is_guided(o.integrator);
-  if (o.integrator == "light" && (a.light_choice == "tree" || a.light_choice == "learned"))
+  if (integrator == "light" && (a.light_choice == "tree" || a.light_choice == "learned"))
     throw Error(fmt::format(
         "--light-choice {}: light chooses its lights by power or uniform; leave it out, or take one", a.light_choice));
-  if (o.learn_lights && o.integrator != "path" && o.integrator != "bdpt")
+  if (a.light_choice == "learned" && !is_guided(integrator) && integrator != "path" && integrator != "bdpt")
     throw Error(fmt::format("--light-choice learned: {} learns no choice of lights; take path, bdpt or what guides",
-                            o.integrator));
+                            integrator));
+}
+
+// How next-event estimation chooses among them.
+void choose_lights(const RenderArguments& a, Scene& scene, bool planned, RenderOptions& o) {
+  check_light_choice(a, o.integrator);
+  o.learn_lights = a.light_choice == "learned" && (planned || !is_guided(o.integrator));
   if (a.light_choice == "uniform" || a.light_choice == "power")
     set_light_choice(scene, a.light_choice == "uniform" ? LightChoice::uniform : LightChoice::power);
+}
+
+// The other one has the same options.
+void check_other(const RenderArguments& a, bool planned, const RenderOptions& options, const Scene& scene) {
+  check_versus(a.versus, planned ? "what is planned" : options.integrator);
+  RenderOptions other = options;
+  other.integrator = a.versus;
+  check_next_event(other, scene);
+  check_light_choice(a, a.versus);
 }
 
 }  // namespace
@@ -284,8 +295,8 @@ RenderOptions render_options(const RenderArguments& a, Scene& scene, bool planne
   const Guided guided = o.learn.guided;
   o.learn = learn_options(a, o.integrator, planned || is_guided(o.integrator));
   if (lists_parts(a)) o.learn.guided = guided;
-  choose_lights(a, scene, o);
-  if (!a.versus.empty()) check_versus(a.versus, planned ? "what is planned" : o.integrator);
+  choose_lights(a, scene, planned, o);
+  if (!a.versus.empty()) check_other(a, planned, o, scene);
   if (o.techniques && !planned && !has_strategies(o.integrator))
     throw Error(
         fmt::format("--techniques: {} has no strategies to tell apart; take bdpt or guided-bdpt, say", o.integrator));

@@ -1,6 +1,7 @@
 // Frames to film, by ffmpeg.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -80,14 +81,24 @@ std::string absolute_pattern(const std::string& names) {
   return out + names;
 }
 
+// What MPEG-1 and MPEG-2 can say (ISO/IEC 13818-2, table 6-4).
+bool is_mpeg_rate(double fps) {
+  constexpr double known[] = {24, 25, 30, 50, 60};
+  return std::any_of(std::begin(known), std::end(known),
+                     [&](double rate) { return fps == rate || std::abs(fps - rate * 1000 / 1001) < 0.005; });
+}
+
 }  // namespace
 
-void check_video(const std::string& out) {
+void check_video(const std::string& out, double fps) {
   static constexpr const char* known[] = {".mp4", ".mov", ".mkv", ".webm", ".gif",  ".avi", ".m4v",
                                           ".mpg", ".ogv", ".wmv", ".flv",  ".mpeg", ".ts"};
   if (std::find(std::begin(known), std::end(known), extension_of(out)) == std::end(known))
     throw Error(fmt::format("--video {}: is no name for a film; write NAME.mp4, or one with {}", out,
                             fmt::join(std::begin(known) + 1, std::end(known), ", ")));
+  if ((extension_of(out) == ".mpg" || extension_of(out) == ".mpeg") && !is_mpeg_rate(fps))
+    throw Error(fmt::format(
+        "--video {}: MPEG has no {:g} frames a second; write --fps 24, 25, 30, 50 or 60, or NAME.mp4", out, fps));
   if (find_program("ffmpeg").empty())
     throw Error("--video: ffmpeg is not installed (Debian: apt-get install ffmpeg); install it, or leave --video out");
 }

@@ -27,9 +27,20 @@ float boundary(float share, float ior) {
   return std::min(3 * s / std::max(s + (1 - share) * (1 - reflected), 1e-6f), 1.0f);
 }
 
+float narrow(float alpha) { return 1 - std::clamp((alpha - 0.1f) * 2.5f, 0.0f, 1.0f); }
+
+// The same of all that is on its base: what metal reflects, it reflects at all angles.
+float breadth(const Principled& p) {
+  const float base = max_component(p.base), dielectric = 1 - p.metallic;
+  const float reflected = dielectric * sqr((p.eta - 1) / (p.eta + 1)), coat = 0.01f * p.clearcoat;
+  const float all = dielectric * base + p.metallic * base + reflected + coat;
+  const float narrow_part =
+      (3 * reflected + p.metallic * base) * narrow(sqr(p.roughness) * p.aspect) + 3 * coat * narrow(p.clearcoat_alpha);
+  return std::max(1 - narrow_part / std::max(all, 1e-6f), 0.0f);
+}
+
 // How far a field of incident light or importance alone, without the bsdf, is a good guide: not for narrow lobes.
 float breadth(const Lobe& lobe) {
-  const auto rough = [](float alpha) { return std::clamp((alpha - 0.1f) * 2.5f, 0.0f, 1.0f); };
   switch (lobe.kind) {
     case LobeKind::diffuse:
     case LobeKind::roughdiffuse:
@@ -37,15 +48,15 @@ float breadth(const Lobe& lobe) {
     case LobeKind::plastic:
       return 1 - boundary(lobe.plastic.share, lobe.plastic.ior);
     case LobeKind::roughplastic:
-      return 1 - boundary(lobe.roughplastic.share, lobe.roughplastic.ior) * (1 - rough(lobe.roughplastic.alpha));
+      return 1 - boundary(lobe.roughplastic.share, lobe.roughplastic.ior) * narrow(lobe.roughplastic.alpha);
     case LobeKind::roughconductor:
-      return rough(std::min(lobe.roughconductor.facets.alpha_u, lobe.roughconductor.facets.alpha_v));
+      return 1 - narrow(std::min(lobe.roughconductor.facets.alpha_u, lobe.roughconductor.facets.alpha_v));
     case LobeKind::phong:
-      return 1 - lobe.phong.share * (1 - rough(std::sqrt(2 / (lobe.phong.exponent + 2))));
+      return 1 - lobe.phong.share * narrow(std::sqrt(2 / (lobe.phong.exponent + 2)));
     case LobeKind::ward:
-      return 1 - lobe.ward.share * (1 - rough(std::min(lobe.ward.facets.alpha_u, lobe.ward.facets.alpha_v)));
+      return 1 - lobe.ward.share * narrow(std::min(lobe.ward.facets.alpha_u, lobe.ward.facets.alpha_v));
     case LobeKind::principled:
-      return rough(sqr(lobe.principled.roughness) * lobe.principled.aspect);
+      return breadth(lobe.principled);
     default:
       return 0;  // deltas
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ajar/core/distribution.h"
 #include "ajar/scene/surface.h"
 #include "fixed.h"
 
@@ -89,7 +90,8 @@ void unite(const LightTree& tree, const std::vector<uint32_t>& parents, double l
       if (a.share + b.share > least) break;
       CutNode both = a;
       both.node = parent, both.share += b.share;
-      both.weight = float((a.share * double(a.weight) + b.share * double(b.weight)) / std::max(both.share, 1e-30));
+      both.weight = both.share > 0 ? float((a.share * double(a.weight) + b.share * double(b.weight)) / both.share)
+                                   : std::max(a.weight, b.weight);
       both.e.square += b.e.square, both.e.hits += b.e.hits, both.e.tried += b.e.tried;
       out.pop_back();
       out.back() = both;
@@ -124,11 +126,12 @@ void append(std::vector<CutNode>& cut, const LightTree& tree, const LightRules& 
     for (CutNode& w : cut)
       w.share = power_of(tree, tree.nodes[w.node].first, tree.nodes[w.node].last) * double(w.weight);
   normalise(cut);
-  double before = 0;
-  for (const CutNode& w : cut) {
-    to.entries.push_back({w.node, tree.nodes[w.node].first, w.weight, float(std::min(before, 1 - 0x1p-24))});
-    to.evidence.push_back(w.e);
-    before += w.share;
+  std::vector<float> shares, before(cut.size() + 1);
+  for (const CutNode& w : cut) shares.push_back(w.share > 0 ? float(std::max(w.share, 1e-30)) : 0);
+  cumulate(shares, before.data());  // however faint a lamp, it has its share of the starts
+  for (size_t i = 0; i < cut.size(); ++i) {
+    to.entries.push_back({cut[i].node, tree.nodes[cut[i].node].first, cut[i].weight, before[i]});
+    to.evidence.push_back(cut[i].e);
   }
   to.cuts.push_back(c);
 }

@@ -19,6 +19,12 @@ bool is_plain(const Scene& scene, const LightCut* cut) {
   return !scene.light_tree.sky.empty() && (!cut || cut->plain != 0);
 }
 
+// Probability of a next-event ray: none is sent where no light may be asked.
+float asks_of(const LightTree& tree, const LightCut* cut) {
+  if (tree.nodes.empty() || !(tree.nodes[0].weight > 0)) return 0;
+  return cut ? cut->asks : 1;
+}
+
 bool is_cut(const LightChances& c) { return c.cut && c.cut->count > 1; }
 
 const LightChances& know(const LightTree& tree, const Guide& guide, LightChances& c) {
@@ -26,7 +32,7 @@ const LightChances& know(const LightTree& tree, const Guide& guide, LightChances
   c.known = true;
   c.cut = cut_of(guide);
   c.at = receiver_at(guide);
-  c.asks = c.cut ? c.cut->asks : 1;
+  c.asks = asks_of(tree, c.cut);
   c.total = 0;
   if (!is_cut(c)) return c;
   for (uint32_t i = 0; i < c.cut->count; ++i) {
@@ -61,7 +67,7 @@ uint32_t draw(const LightChances& c, float& u) {
 // A light of the sky as a whole, by power. Which piece that would have been is left open.
 bool sample_plain(const Scene& scene, const Guide& guide, const LightCut* cut, float u, const Vec2& u_point,
                   DirectSample& out) {
-  const float asks = cut ? cut->asks : 1;
+  const float asks = asks_of(scene.light_tree, cut);
   if (!is_asked(asks, u)) return false;
   float pick;
   const SkyLight& light = choose_of_sky(scene.light_tree, receiver_at(guide), u, pick);
@@ -73,7 +79,7 @@ bool sample_plain(const Scene& scene, const Guide& guide, const LightCut* cut, f
 double pdf_plain(const Scene& scene, const Guide& guide, const LightCut* cut, const LightPoint& point, const Vec3& wi) {
   const float pick = sky_pdf(scene.light_tree, receiver_at(guide), point.light);
   const double pdf = point.delta_direction ? 1 : double(pdf_direct(scene, point, guide.p, wi));
-  return pdf * double(pick) * (cut ? double(cut->asks) : 1);
+  return pdf * double(pick) * double(asks_of(scene.light_tree, cut));
 }
 
 float wrapped(float u) { return std::min(u - std::floor(u), one_minus_epsilon); }
@@ -97,7 +103,7 @@ bool choose_light(const Scene& scene, const Guide& guide, LightChances& chances,
   const LightTree& tree = scene.light_tree;
   const LightChances& c = know(tree, guide, chances);
   place = none, pdf = c.asks;
-  if (tree.nodes.empty() || !is_asked(c.asks, u)) return false;
+  if (!is_asked(c.asks, u)) return false;
   if (tree.pieces.size() == 1) {
     place = 0;
     return true;

@@ -1,6 +1,7 @@
 #include "integrators.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "ajar/core/error.h"
 

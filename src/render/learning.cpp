@@ -54,6 +54,7 @@ void go_on_from(StoredFields stored, const LearnOptions& options, Learning& l, F
   for (Short& m : l.fields.disk.mean) m = float(scale) * m;
   restrict_to(l.fields, options.guided);
   l.training = start_training(l.fields);
+  if (l.fields.generation < blind(l)) l.fields.generation -= l.fields.generation % 2;  // passes are dropped in pairs
   l.first = film.dropped = (stored.passes + 1) / 2 * 2;
 }
 

@@ -4,6 +4,7 @@
 #include "ajar/render/plan.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <thread>

@@ -23,7 +23,8 @@ bool give_lessons(const Scene& scene, const Accel& accel, const RenderOptions& o
   l.lesson = passes;
   l.train = first + lessons;
   RenderOptions endless = options;
-  endless.spp = 0, endless.seconds = 0, endless.cpu_seconds = 0, endless.noise = 0, endless.techniques = false;
+  endless.spp = 0, endless.seconds = 0, endless.cpu_seconds = 0, endless.noise = 0,
+  endless.techniques = endless.leaves_out = false;
   bool stopped = false;
   render(scene, accel, endless, state, [&](const RenderState& now) {
     stopped = monitor && !monitor(now);

@@ -173,10 +173,13 @@ Json techniques_json(const Bench& bench, const Stand& stand, const Method& metho
   Json list = Json::array();
   for (const fs::path& file : files) {
     int s = 0, t = 0;
+    char kind = 0;
     const std::string stem = file.stem().string();
-    if (stem.ends_with("-raw") || std::sscanf(stem.c_str(), "s%dt%d", &s, &t) != 2) continue;
+    if (stem.ends_with("-raw") || std::sscanf(stem.c_str(), "%c%dt%d", &kind, &s, &t) != 3) continue;
+    if (kind != 's' && kind != 'm') continue;
     list.push_back({{"s", s},
                     {"t", t},
+                    {"merged", kind == 'm'},
                     {"weighted", (relative / file).string()},
                     {"raw", (relative / (stem + "-raw.exr")).string()}});
   }

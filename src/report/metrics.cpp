@@ -3,20 +3,12 @@
 #include <fmt/format.h>
 
 #include "ajar/core/error.h"
+#include "ajar/film/film.h"
 #include "ajar/film/tone.h"
 #include "planes.h"
 
 namespace ajar {
 namespace {
-
-/// Mean of the pixels' relative errors without the worst thousandth of them, rounded down.
-double trimmed_mean(std::vector<double> errors) {
-  std::sort(errors.begin(), errors.end());
-  const size_t kept = errors.size() - errors.size() / 1000;
-  double sum = 0;
-  for (size_t i = 0; i < kept; ++i) sum += errors[i];
-  return sum / double(kept);
-}
 
 void pixel_metrics(const std::array<Plane, 3>& image, const std::array<Plane, 3>& reference, Metrics& metrics) {
   const size_t pixels = image[0].size();

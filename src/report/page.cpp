@@ -1,6 +1,7 @@
 #include "ajar/report/page.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <fstream>
 #include <map>

@@ -118,6 +118,13 @@ std::string median_of(const Json& runs, const std::function<double(const Json&)>
   return s ? fmt::format("{:.4g}", s->median) : "-";
 }
 
+/// Camera paths, those of lessons among them, whose time counts too; where there are none, samples in the image.
+double samples_of(const Json& run, double pixels) {
+  const Json edges = run.contains("mean_path_edges") ? run["mean_path_edges"]["camera"] : Json();
+  if (!edges.is_number() || !(edges.get<double>() > 0)) return run["spp"].get<double>() * pixels;
+  return run["rays"]["camera"].get<double>() / edges.get<double>();
+}
+
 std::vector<std::string> row_of(const Json& scene, const Json& method) {
   const double pixels = scene["width"].get<double>() * scene["height"].get<double>();
   const Json& relmse = method["summary"]["relmse"];
@@ -130,9 +137,8 @@ std::vector<std::string> row_of(const Json& scene, const Json& method) {
           shown(part("time_ratio"), "value") + (bound ? " *" : ""),
           shown(part("slope"), "value"),
           median_of(method["runs"], [](const Json& r) { return r["spp"].get<double>(); }),
-          median_of(
-              method["runs"],
-              [&](const Json& r) { return 1e6 * r["cpu_seconds"].get<double>() / (r["spp"].get<double>() * pixels); }),
+          median_of(method["runs"],
+                    [&](const Json& r) { return 1e6 * r["cpu_seconds"].get<double>() / samples_of(r, pixels); }),
           method["verdict"].is_null() ? "-" : method["verdict"].get<std::string>()};
 }
 

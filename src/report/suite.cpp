@@ -1,6 +1,7 @@
 #include "ajar/report/suite.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <cstdlib>

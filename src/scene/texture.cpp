@@ -108,6 +108,7 @@ std::span<const Rgb> values_of(const Mesh& mesh, const std::string& name, bool& 
 }
 
 Rgb eval_attribute(const Scene& scene, const Texture& texture, const Surface& at) {
+  if (at.shape == none) return Rgb(0);  // a picture that a lamp throws
   const Shape& shape = scene.shapes[at.shape];
   if (shape.kind != ShapeKind::mesh) return Rgb(0);
   const Mesh& mesh = scene.meshes[shape.mesh];

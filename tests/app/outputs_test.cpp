@@ -77,6 +77,7 @@ TEST_F(Outputs, WrongOnesAreErrorsBeforeTheRender) {
       {{"--techniques", "t", "--checkpoint", "t"}, "--techniques t: is the same file as --checkpoint t"},
       {{"--techniques", "a.exr"}, "--techniques a.exr: is the same file as -o a.exr"},
       {{"-o", "there/s0t2.exr", "--techniques", "there"}, "would take away -o there/s0t2.exr, whose name is that of a"},
+      {{"-o", "none/s1t2.exr", "--techniques", "none/"}, "would take away -o none/s1t2.exr"},
       {{"--reference", "m2t2-raw.exr", "--log", "l", "--techniques", "."}, "would take away --reference m2t2-raw.exr"},
       {{"--checkpoint", "a.exr"}, "--checkpoint a.exr: is the same file as -o a.exr"},
       {{"--log", "there/../a.json"}, "is the same file as the record a.json"},
@@ -100,6 +101,9 @@ TEST_F(Outputs, WrongOnesAreErrorsBeforeTheRender) {
       {{"--light-choice", "learned", "--integrator", "vcm"}, "vcm learns no choice of lights; take path, bdpt or"},
       {{"--light-choice", "tree", "--integrator", "path", "--no-next-event"}, "no light is chosen; leave it out"},
       {{"--light-choice", "tree", "--integrator", "light"}, "light chooses its lights by power or uniform"},
+      {{"--integrator", "path", "--no-next-event", "--versus", "bdpt"}, "--no-next-event: bdpt needs it"},
+      {{"--integrator", "path", "--light-choice", "learned", "--versus", "light"}, "by power or uniform; leave it out"},
+      {{"--integrator", "path", "--light-choice", "learned", "--versus", "plain-vpl"}, "plain-vpl learns no choice"},
       {{"--max-depth", "5000"}, "--max-depth 5000: paths end at 4096 edges"},
       {{"--save-fields", "f"}, "bdpt learns no fields; take --integrator guided-bdpt, guided-path, guided-vcm or vpl"},
   };
@@ -303,12 +307,52 @@ TEST_F(Outputs, VersusIsCheckedBeforeAPlannedRender) {
   EXPECT_EQ(count(), 3u);
 }
 
+// The scene may stand anywhere among the options.
+TEST_F(Outputs, FeaturesMayStandBeforeTheScene) {
+  testing::internal::CaptureStdout();
+  run_command_line({"render", "--aov", "albedo", "box.xml", "-q", "--size", "8x8", "--spp", "1", "-o", "a.exr"});
+  testing::internal::GetCapturedStdout();
+  EXPECT_EQ(read_picture("a.exr").channels(), 6);
+}
+
 TEST_F(Outputs, NamesNeedBeNoText) {
   testing::internal::CaptureStdout();
   run({"-o", "caf\xe9.exr"});
   testing::internal::GetCapturedStdout();
   EXPECT_TRUE(fs::exists("caf\xe9.exr"));
   EXPECT_TRUE(fs::exists("caf\xe9.json"));
+}
+
+// Whatever the scene names: what is planned may guide, and merges nothing.
+TEST_F(Outputs, WhatIsPlannedIsCheckedAsWhatGuidesIs) {
+  const auto said = [](Words words) {
+    words.insert(words.begin(), {"render", "box.xml", "-q", "--plan", "auto", "--size", "8x8", "-o", "a.exr"});
+    return kit::error_of([&] { run_command_line(words); });
+  };
+  EXPECT_NE(said({"--no-next-event"}).find("--no-next-event: guided-bdpt needs it"), std::string::npos);
+  EXPECT_NE(said({"--merge-radius", "9"}).find("guided-bdpt merges nothing"), std::string::npos);
+  EXPECT_NE(said({"--final-gather", "8"}).find("guided-bdpt has no photon map"), std::string::npos);
+  EXPECT_EQ(count(), 3u);
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(said({"--light-choice", "learned", "--spp", "1"}), "");  // bdpt's, for want of time
+  testing::internal::GetCapturedStdout();
+  EXPECT_NE(kit::bytes_of("a.json").find("\"light_choice\": \"learned\""), std::string::npos);
+}
+
+// A checkpoint is not gone on from by itself.
+TEST_F(Outputs, ACheckpointThatIsBegunAnewIsTold) {
+  const auto said = [](const Words& more) {
+    Words words = {"render", "box.xml", "--integrator", "path",  "--size",       "8x8",
+                   "--spp",  "1",       "-o",           "a.exr", "--checkpoint", "state"};
+    words.insert(words.end(), more.begin(), more.end());
+    testing::internal::CaptureStdout(), testing::internal::CaptureStderr();
+    run_command_line(words);
+    testing::internal::GetCapturedStdout();
+    return testing::internal::GetCapturedStderr();
+  };
+  EXPECT_EQ(said({}).find("begun anew"), std::string::npos);
+  EXPECT_NE(said({}).find("note: state is begun anew; --resume state would go on from it\n"), std::string::npos);
+  EXPECT_EQ(said({"--resume", "state"}).find("begun anew"), std::string::npos);
 }
 
 // What a list of parts makes is checked as if it had been named.

@@ -2,6 +2,8 @@
 // nothing is seen, and starts of light subpaths follow their densities on the disk across the scene.
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "kit/chisquare.h"
 #include "kit/stage.h"
 #include "train.h"
@@ -89,6 +91,76 @@ TEST(LearnedLights, ACellThatNothingShinesAtHasShares) {
   ASSERT_EQ(v.cuts[0].count, 2u);
   EXPECT_EQ(share_of(v, v.cuts[0], 0), 0.5f);
   EXPECT_EQ(share_of(v, v.cuts[0], 1), 0.5f);
+}
+
+// A lamp that is far fainter than two others on both sides of it has its share of the starts all the same: without, its
+// light would count as found by hits alone, which find no point.
+TEST(LearnedLights, FaintLampsStartToo) {
+  Scene scene;
+  set_camera(scene, Vec3(0, 0, 3), Vec3(0), 40, 8, 8);
+  for (const float x : {-1000.0f, 0.0f, 1000.0f})
+    scene.lights[add_light(scene, LightKind::point, Rgb(x == 0 ? 1.0f : 1e9f))].position = {x, 0, 0};
+  finish(scene);
+  LearnedLights v;
+  add_cut(v, none);
+  LightRules rules;
+  rules.by_power = true, rules.most = most_starts;
+  for (int lesson = 0; lesson < 6; ++lesson) {
+    LightTallies t = start_tallies(v);
+    for (uint32_t e = 0; e < v.entries.size(); ++e)
+      for (int i = 0; i < 200; ++i) record(v, t, e, 1);
+    v = learn_lights(scene.light_tree, v, t, rules);
+  }
+  ASSERT_EQ(v.cuts[0].count, 3u);
+  float sum = 0;
+  for (uint32_t e = 0; e < 3; ++e) {
+    EXPECT_GT(share_of(v, v.cuts[0], e), 0) << e;
+    sum += share_of(v, v.cuts[0], e);
+  }
+  EXPECT_EQ(sum, 1);
+}
+
+// Entries that a cell cannot see are joined, and have a weight all the same.
+TEST(LearnedLights, WhatIsJoinedUnseenHasAWeight) {
+  const Scene scene = under_sky(LightKind::constant);
+  const Receiver cell{Vec3(0), glm::normalize(Vec3(1))};
+  LearnedLights v;
+  add_cut(v, none);
+  int joined = 0;
+  for (int lesson = 0; lesson < 5; ++lesson) {
+    std::set<uint32_t> before;
+    for (const LightEntry& e : v.entries) before.insert(e.node);
+    LightTallies t = start_tallies(v);
+    for (uint32_t i = 0; i < 4000; ++i) {
+      const uint32_t entry = entry_of(v, v.cuts[0], i % uint32_t(scene.light_tree.pieces.size()));
+      record(v, t, entry, importance(scene.light_tree, v.entries[entry].node, cell) > 0 ? 1.0f : 0.0f);
+    }
+    v.cuts[0].plain = 1;
+    v = learn_lights(scene.light_tree, v, t, {}, {&cell, 1});
+    for (const LightEntry& e : v.entries) {
+      EXPECT_GT(e.weight, 0) << lesson;
+      joined += before.contains(scene.light_tree.nodes[e.node].left);
+    }
+  }
+  EXPECT_GT(joined, 0) << "the test means little";
+}
+
+// What is not to be asked for is not, be it the only light.
+TEST(LearnedLights, TheOnlyLampNeedNotBeAskedFor) {
+  for (const LightKind kind : {LightKind::area, LightKind::constant, LightKind::envmap}) {
+    Scene scene = kind == LightKind::area ? many_lights(1, 2) : under_sky(kind);
+    scene.lights[0].sampling_weight = 0;
+    finish(scene);
+    const Lit t(std::move(scene), 1, 100);
+    int vertices = 0;
+    at_vertices(t, 40, [&](const Vertex& v) {
+      LightChances chances;
+      DirectSample s;
+      EXPECT_FALSE(sample_next_event(t.scene, v.guide, chances, {0.5f, {0.5f, 0.5f}}, s));
+      ++vertices;
+    });
+    EXPECT_GT(vertices, 10);
+  }
 }
 
 // Whatever the first ray's numbers are, the choice goes round the lights in even steps; and each ray's numbers are as

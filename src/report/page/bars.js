@@ -77,12 +77,6 @@ function parts_of(runs, names, of, text) {
 
 const known = parts => parts.some(({value}) => is_number(value));
 
-/** Camera paths of a run, lessons' among them, whose rays are counted too; where there are none, samples in the image. */
-function samples_of(run, pixels) {
-  const edges = run.mean_path_edges?.camera;
-  return edges > 0 ? run.rays?.camera / edges : run.spp * pixels;
-}
-
 /** The charts of a scene whose figures are there, as functions of a width. */
 function charts_of(scene) {
   const methods = (scene.methods ?? []).map(({name, runs = []}) => ({name, runs})).filter(({runs}) => runs.length);

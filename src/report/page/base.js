@@ -99,3 +99,9 @@ function table(class_name, head, rows, foot = []) {
       el('tbody', {}, rows.map(row => cells('td', row))),
       foot.length ? el('tfoot', {}, foot.map(row => cells('td', row))) : null);
 }
+
+/** Camera paths of a run, lessons' among them, whose rays are counted too; where there are none, samples in the image. */
+function samples_of(run, pixels) {
+  const edges = run.mean_path_edges?.camera;
+  return edges > 0 ? run.rays?.camera / edges : run.spp * pixels;
+}

@@ -18,36 +18,40 @@ function energy({red, green, blue, scale}) {
   return sum / red.length;
 }
 
-/** Rows of equal s + t, as in Veach's figures: s grows to the right. */
+/** Rows of paths of one length, as in Veach's figures: s grows to the right; merges, whose vertex in common counts on
+ * both sides, behind the joins. */
 async function draw_pyramid(method, kind, exposure, box) {
   const techniques = method.techniques.filter(technique => technique[kind] && files[technique[kind]]);
   const images = await Promise.all(techniques.map(technique => load(technique[kind])));
   const means = images.map(energy), all = means.reduce((a, b) => a + b, 0);
   const rows = new Map();
-  techniques.forEach(({s, t}, i) => {
+  techniques.forEach(({s, t, merged}, i) => {
+    const edges = s + t - (merged ? 2 : 1), letter = merged ? 'm' : 's';
     const image = images[i], canvas = el('canvas', {
                                width: image.width,
                                height: image.height,
-                               'aria-label': `s = ${s}, t = ${t}`,
-                               'data-strategy': `${s} ${t}`
+                               'aria-label': `${letter} = ${s}, t = ${t}`,
+                               'data-strategy': merged ? `m${s} ${t}` : `${s} ${t}`
                              });
     canvas.getContext('2d').putImageData(toned(image, exposure), 0, 0);
     const share = all > 0 ? means[i] / all : 0;
     const cell =
-        el('figure', {title: `${s} light and ${t} camera vertices; mean luminance ${number(means[i])}`}, canvas,
-           el('figcaption', {}, `s ${s}, t ${t}`,
+        el('figure',
+           {title: `${s} light and ${t} camera vertices${merged ? ', merged' : ''}; mean luminance ${number(means[i])}`},
+           canvas,
+           el('figcaption', {}, `${letter} ${s}, t ${t}`,
               kind === 'weighted' ? el('span', {class: 'range'}, ` ${share === 0 ? '0' : percent(share)}`) : null));
     canvas.addEventListener('click', () => cell.classList.toggle('large'));
-    if (!rows.has(s + t)) rows.set(s + t, []);
-    rows.get(s + t).push({s, cell});
+    if (!rows.has(edges)) rows.set(edges, []);
+    rows.get(edges).push({order: s + (merged ? 100 : 0), cell});
   });
   box.replaceChildren(
       ...[...rows]
           .sort(([a], [b]) => a - b)
           .map(
-              ([k, cells]) =>
-                  el('div', {class: 'pyramid-row'}, el('span', {class: 'label'}, `${k - 1} edge${k === 2 ? '' : 's'}`),
-                     cells.sort((a, b) => a.s - b.s).map(({cell}) => cell))));
+              ([edges, cells]) =>
+                  el('div', {class: 'pyramid-row'}, el('span', {class: 'label'}, `${edges} edge${edges === 1 ? '' : 's'}`),
+                     cells.sort((a, b) => a.order - b.order).map(({cell}) => cell))));
 }
 
 function fill_pyramid(methods, box) {
@@ -73,7 +77,8 @@ function fill_pyramid(methods, box) {
          labelled('Exposure', exposure, text)),
       el('div', {class: 'wide'}, rows),
       el('p', {class: 'note'},
-         'One picture for each number s of light and t of camera vertices; a row has the paths of one length. ' +
+         'One picture for each number s of light and t of camera vertices; a row has the paths of one length, ' +
+             'merges (m) behind joins (s). ' +
              'Weighted: what it adds to the image, with its share of the light; ' +
              'raw: its own estimate of all of it. Click a picture to enlarge it.'));
   draw();
@@ -107,7 +112,7 @@ function fill_shares(scene, methods, box) {
     };
     if (!rows.some(Boolean)) return [nothing, nothing, nothing, nothing];
     const sum = key => rows.reduce((total, row) => total + (row?.[key] ?? 0), 0);
-    const samples = method.runs.reduce((total, run) => total + run.spp * pixels, 0);
+    const samples = method.runs.reduce((total, run) => total + samples_of(run, pixels), 0);
     const rays = sum('rays');
     return [
       share('energy'), share('time'), number(rays / samples, 2),

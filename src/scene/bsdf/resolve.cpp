@@ -181,9 +181,7 @@ bool is_mixed(LobeKind k) {
          k != LobeKind::roughdiffuse && k != LobeKind::difftrans;
 }
 // Value and densities, deltas aside, for directions on two sides.
-bool transmits(LobeKind k) {
-  return k == LobeKind::roughdielectric || k == LobeKind::principled || k == LobeKind::difftrans;
-}
+bool transmits(const Lobe& lobe) { return turns_through(lobe) && is_smooth(lobe.kind); }
 
 void add(Resolver& r, uint32_t id, float weight);
 
@@ -196,7 +194,7 @@ void add_leaf(Resolver& r, const Material& m, float weight) {
   out.has_delta |= is_delta(kind);
   out.has_smooth |= is_smooth(kind);
   out.chooses |= is_mixed(kind);
-  out.opaque &= !transmits(kind);
+  out.opaque &= !transmits(out.lobes[out.count]);
   if (r.split) out.normals[out.count] = r.frame.n;
   out.weights[out.count++] = weight;
 }

@@ -90,12 +90,27 @@ void point(Params& p) {
 }
 
 // The picture that a spot throws is its texture times its intensity.
+bool shows_attribute(const Scene& scene, const Slot& slot) {
+  if (slot.texture == none) return false;
+  const Texture& t = scene.textures[slot.texture];
+  if (t.kind == TextureKind::bitmap || t.kind == TextureKind::mesh_attribute)
+    return t.kind == TextureKind::mesh_attribute;
+  return shows_attribute(scene, t.color0) || shows_attribute(scene, t.color1);
+}
+
+// A picture that is thrown is of no mesh.
+void refuse_attributes(Params& p, const Slot& picture) {
+  if (shows_attribute(p.loader.scene, picture))
+    unsupported(p.loader, p.node, "its picture shows a mesh attribute, and it has no mesh", "black in its place");
+}
+
 void project_texture(Params& p, double cutoff, Light& light) {
   const Node* node = find(p, {"texture"});
   if (node == nullptr) return;
   const Slot picture = slot_of(p.loader, *node, Colour::ratio);
   if (picture.texture != none && !(cutoff < 90))
     fail(p.loader, p.node, "with a texture cutoff_angle should be less than 90 degrees");
+  refuse_attributes(p, picture);
   light.radiance = product(p, picture, light.radiance);
 }
 
@@ -131,6 +146,7 @@ void projector(Params& p) {
   const double scale = number(p, "scale", 1);
   if (scale < 0) fail(p.loader, p.node, "scale should not be negative");
   const Slot picture = colour_or_texture(p, "irradiance");
+  refuse_attributes(p, picture);
   light.radiance = product(p, picture, float(scale * std::numbers::pi));
   Camera camera;
   camera.width = camera.height = 1;

@@ -1,6 +1,7 @@
 #include "node.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -33,6 +34,33 @@ fs::path other_case(const fs::path& folder, const fs::path& name) {
   }
   std::error_code ignored;
   return fs::is_regular_file(folder / spelt, ignored) ? spelt : fs::path();
+}
+
+bool may_be_name(const std::string& name) {
+  return !name.empty() && name.find('\0') == name.npos && name.size() <= 4096;
+}
+
+std::string with_slashes(std::string name) {
+  std::replace(name.begin(), name.end(), '\\', '/');
+  return name;
+}
+
+std::vector<fs::path> where_to_look(const Document& document, const Node& node) {
+  std::vector<fs::path> out(document.folders.begin(), document.folders.end());
+  out.push_back(fs::path(document.files[node.file]).parent_path());
+  out.push_back(".");
+  return out;
+}
+
+struct Found {
+  fs::path folder, name;  // empty: there is none
+};
+
+Found in_other_capitals(const Document& document, const Node& node, const std::string& name) {
+  if (!may_be_name(name)) return {};
+  for (const fs::path& folder : where_to_look(document, node))
+    if (const fs::path other = other_case(folder, with_slashes(name)); !other.empty()) return {folder, other};
+  return {};
 }
 }  // namespace
 
@@ -106,38 +134,26 @@ std::string place(const Document& document, const Node& node) {
 std::string missing_file(const Document& document, const Node& node, const std::string& name) {
   const std::string said =
       fmt::format("there is no file \"{}\" in {}", name.substr(0, 200), fmt::join(document.folders, " or "));
-  std::vector<std::string> folders = document.folders;
-  folders.push_back(fs::path(document.files[node.file]).parent_path().string());
-  std::string slashes = name.find('\0') == name.npos && name.size() <= 4096 ? name : "";
-  std::replace(slashes.begin(), slashes.end(), '\\', '/');
-  for (const std::string& folder : folders)
-    if (const fs::path other = other_case(folder, slashes); !other.empty())
-      return fmt::format("{}, but \"{}\"; correct its capitals", said, other.string());
+  if (const Found other = in_other_capitals(document, node, name); !other.name.empty())
+    return fmt::format("{}, but \"{}\"; correct its capitals", said, other.name.string());
   return said + "; correct the name, or add its folder with <path value=\"...\"/>";
 }
 
 std::string find_file(const Document& document, const Node& node, const std::string& name) {
-  if (name.empty() || name.find('\0') != name.npos || name.size() > 4096) return {};
+  if (!may_be_name(name)) return {};
   std::error_code ignored;
-  const auto look = [&](const std::string& spelt) -> std::string {
-    for (const std::string& folder : document.folders)
-      if (const fs::path path = fs::path(folder) / spelt; fs::is_regular_file(path, ignored)) return path.string();
-    const fs::path beside = fs::path(document.files[node.file]).parent_path() / spelt;
-    return fs::is_regular_file(beside, ignored) ? beside.string() : std::string();
-  };
-  std::string found = look(name);
-  if (found.empty() && name.find('\\') != name.npos) {
-    std::string slashes = name;
-    std::replace(slashes.begin(), slashes.end(), '\\', '/');
-    found = look(slashes);
-  }
+  const std::vector<fs::path> folders = where_to_look(document, node);
+  for (const std::string& spelt : {name, with_slashes(name)})
+    for (const fs::path& folder : folders)
+      if (const fs::path path = folder / spelt; fs::is_regular_file(path, ignored)) return path.string();
+  const Found other = document.old ? in_other_capitals(document, node, name) : Found();
+  if (!other.name.empty()) return (other.folder / other.name).string();
   for (const std::string& folder : document.folders) {  // what may be there, so that reading it tells why not
-    if (!found.empty()) break;
     std::error_code error;
     const fs::path path = fs::path(folder) / name;
-    if (!fs::exists(path, error) && error == std::errc::permission_denied) found = path.string();
+    if (!fs::exists(path, error) && error == std::errc::permission_denied) return path.string();
   }
-  return found;
+  return {};
 }
 
 }  // namespace ajar

@@ -57,8 +57,9 @@ std::string place(const Document& document, const Node& node);
 std::string pointer_problem(std::string_view head);
 /// What to say where find_file finds nothing.
 std::string missing_file(const Document& document, const Node& node, const std::string& name);
-/// The regular file that a name means: as it stands, in the document's folders, with / for \, or beside the file that
-/// holds the element; or the first that may not be looked at. Empty if there is none.
+/// The regular file that a name means, in the document's folders, beside the file that holds the element, or in the
+/// working folder: as it stands, with / for \, or, in version 0.x, in other capitals; or the first that may not be
+/// looked at. Empty if there is none.
 std::string find_file(const Document& document, const Node& node, const std::string& name);
 
 }  // namespace ajar

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -109,7 +110,8 @@ std::string about_suffix(std::string_view text) {
 
 double number_attribute(const Loader& loader, const Node& node, const char* name, double otherwise) {
   const std::string* value = attribute(node, name);
-  return value == nullptr ? otherwise : checked(loader, node, *value);
+  const bool left_out = value == nullptr || (value->empty() && loader.document.old);
+  return left_out ? otherwise : checked(loader, node, *value);
 }
 
 DVec3 vector_of(const Loader& loader, const Node& node, double otherwise) {

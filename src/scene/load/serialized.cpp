@@ -22,7 +22,6 @@ enum Flags : uint32_t {
   has_normals = 0x1,
   has_uvs = 0x2,
   has_colors = 0x8,
-  face_normals = 0x10,
   single_precision = 0x1000,
   double_precision = 0x2000
 };
@@ -188,9 +187,7 @@ Mesh read_mesh(const Pieces& source, int shape_index, const MeshOptions& options
   if (flags & has_uvs) in.array<Vec2, 2>(mesh.uvs, vertices, doubles);
   if (flags & has_colors) in.array<Rgb, 3>(mesh.colors, vertices, doubles);
   in.array<uint32_t, glm::uvec3, 3>(mesh.triangles, triangles);
-  MeshOptions own = options;
-  own.face_normals |= bool(flags & face_normals);
-  complete(mesh, own, fmt::format("{} (mesh {})", name, shape_index));
+  complete(mesh, options, fmt::format("{} (mesh {})", name, shape_index));
   return mesh;
 }
 

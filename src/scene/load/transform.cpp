@@ -41,7 +41,7 @@ DMat4 lookat_of(const Loader& loader, const Node& node) {
   if (!(glm::dot(view, view) > 0)) fail(loader, node, "origin and target are the same point; move one of them");
   const DVec3 z = glm::normalize(view);
   DVec3 up(0);
-  if (attribute(node, "up") != nullptr) up = point_attribute(loader, node, "up");
+  if (const std::string* said = attribute(node, "up"); said && !said->empty()) up = point_attribute(loader, node, "up");
   if (!(glm::dot(up, up) > 0)) up = across(z, loader.document.old);
   const DVec3 left = glm::cross(up, z);
   if (!(glm::dot(left, left) > 1e-16 * glm::dot(up, up)))

@@ -279,7 +279,7 @@ void read_path(Reader& r, const Source& s, const pugi::xml_node& xml, const Node
   if (value == nullptr) fail(r, s, xml, "needs value=\"...\"");
   const fs::path folder = value->empty() ? "." : *value;
   std::error_code ignored;
-  for (const fs::path& candidate : {fs::path(s.folder) / folder, fs::path(r.document.folders.back()) / folder})
+  for (const fs::path& candidate : {fs::path(s.folder) / folder, fs::path(r.document.folders.back()) / folder, folder})
     if (fs::is_directory(candidate, ignored)) {
       r.document.folders.insert(r.document.folders.begin(), candidate.string());
       return;

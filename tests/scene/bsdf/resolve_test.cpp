@@ -169,6 +169,17 @@ TEST(Resolve, FlagsTellDeltaFromSmooth) {
   }
 }
 
+// What lets no light through is lit from one side alone.
+TEST(Resolve, PrincipledIsOpaqueUnlessItRefracts) {
+  Material m;
+  m.kind = MaterialKind::principled;
+  m.roughness = 0.5f;
+  for (const float through : {0.0f, 0.2f}) {
+    m.spec_trans = through;
+    EXPECT_EQ(resolved({m}).bsdf.opaque, through == 0) << through;
+  }
+}
+
 TEST(Resolve, WeightsOfNestedMaterialsMultiply) {
   Material mask = parent(MaterialKind::mask, {1});
   mask.weight = 0.75f;

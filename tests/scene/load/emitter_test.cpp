@@ -100,6 +100,10 @@ TEST(Emitters, Spot) {
   EXPECT_SAYS(error_of(emitter("spot", "<float name='cutoff_angle' value='181'/>")), "cutoff_angle");
   EXPECT_EQ(light("spot", "<float name='cutoff_angle' value='180'/>").cos_cutoff, -1);  // all around
   EXPECT_SAYS(error_of(emitter("spot", "<float name='beam_width' value='30'/>")), "beam_width");
+  for (const auto& [type, slot] : {std::pair("spot", "texture"), std::pair("projector", "irradiance")})
+    EXPECT_SAYS(error_of(emitter(type, "<texture name='" + std::string(slot) +
+                                           "' type='mesh_attribute'><string name='name' value='vertex_c'/></texture>")),
+                "shows a mesh attribute, and it has no mesh");
 }
 
 // The square around the cone, u along x and v along y of the light's own space (Mitsuba's spot).

@@ -33,6 +33,13 @@ TEST(Transform, SingleSteps) {
   EXPECT_RGB(moved("<matrix value='1 1e-007 0 0 0 1 0 0 0 0 1 0 0 0 0 1 '/>", {1, 2, 3}), 1, 2, 3, 1e-6);
 }
 
+// An empty number is left out, to Mitsuba 0.6.
+TEST(Transform, EmptyNumbersAreLeftOutInVersion0) {
+  const std::string steps = "<shape type='disk'><transform name='toWorld'><translate x='' y='2'/></transform></shape>";
+  EXPECT_RGB(Vec3(load_inside(steps, {}, "0.6.0").shapes[0].to_world[3]), 0, 2, 0, 1e-6);
+  EXPECT_SAYS(error_of(steps), "is not a number");
+}
+
 TEST(Transform, StepsFollowTheFile) {
   EXPECT_RGB(moved("<translate x='1'/><scale value='2'/>", {0, 0, 0}), 2, 0, 0, 1e-6);
   EXPECT_RGB(moved("<scale value='2'/><translate x='1'/>", {0, 0, 0}), 1, 0, 0, 1e-6);
@@ -48,6 +55,7 @@ TEST(Transform, LookatLooksAlongZ) {
     EXPECT_RGB(moved(step, {1, 0, 0}), 2, 2, 3, 1e-6);
   }
   EXPECT_RGB(moved("<lookat origin='0,0,0' target='0,5,0'/>", {0, 0, 1}), 0, 1, 0, 1e-6);  // up is found
+  EXPECT_RGB(moved("<lookat origin='0,0,0' target='0,5,0' up=''/>", {0, 0, 1}), 0, 1, 0, 1e-6);
 }
 
 TEST(Transform, FlatShapesNeedNoDepth) {

@@ -258,6 +258,21 @@ TEST(Files, NamesOfOtherCapitalsAreTold) {
   EXPECT_SAYS(error_of("<include filename='Fragments.XML'/>"), "correct the name, or add its folder");
 }
 
+// Mitsuba 0.6 takes them, and the working folder is the last that all versions look in.
+TEST(Files, AreFoundInOtherCapitalsByOldScenesAndInTheWorkingFolder) {
+  const std::string inner = "<shape type='obj'><string name='filename' value='Folder\\INNER.obj'/></shape>";
+  EXPECT_EQ(load_inside(inner, {}, "0.6.0").shapes.size(), 1u);
+  const std::filesystem::path mesh = write_file("ground.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const std::string ground =
+      "<shape type='obj'><string name='filename' value='" + mesh.filename().string() + "'/></shape>";
+  EXPECT_SAYS(error_of(ground), "there is no file");
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(mesh.parent_path());
+  const Scene s = load_inside(ground);
+  std::filesystem::current_path(before);
+  EXPECT_EQ(s.shapes.size(), 1u);
+}
+
 TEST(Files, PointersOfGitLfsAreTold) {
   const std::string pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n";
   const std::string path = write_file("pointer", pointer),
