@@ -14,7 +14,11 @@ struct End {
 // What a vertex passes on from the vertices after it by delta events: the one sample that the path is.
 struct Passed {
   float q = 0, w = 0;
+  float distance = 0;  // to the place that it comes from, where it goes straight on; 0: it is turned
 };
+
+// Panes: their two refractions shift light, and hardly turn it.
+constexpr float straight_on = 0.999f;
 
 // Only reflects or refracts sharply: the fields know nothing of it.
 bool passes(const Guide& guide) { return guide.bsdf.has_delta && !guide.bsdf.has_smooth; }
@@ -51,10 +55,10 @@ void record_segment(const Fields& fields, Training& training, const Vertex& a, c
   if (from.own + from.other <= 0) from.own = 1;
   const double density = from.own * pdf / from.cosine + to.other * back / to.cosine;
   const float at_a = weight_at(from, density);
-  const float distance = std::sqrt(b.distance2);
+  const float distance = std::sqrt(b.distance2), beyond = passes(b.guide) ? distance + passed.distance : distance;
   const float at_b = weight_at(to, density);
-  const FieldRecord records[] = {{Side::camera, from.cell, {a.p, d, distance, to.q, at_a}},
-                                 {Side::light, from.cell, {a.p, d, distance, to.w, at_a}},
+  const FieldRecord records[] = {{Side::camera, from.cell, {a.p, d, beyond, to.q, at_a}},
+                                 {Side::light, from.cell, {a.p, d, beyond, to.w, at_a}},
                                  {Side::camera, to.cell, {b.p, -d, distance, from.q, at_b}},
                                  {Side::light, to.cell, {b.p, -d, distance, from.w, at_b}}};
   record(fields, training, std::span(records, to.cell == none ? 2 : 4));
@@ -73,31 +77,33 @@ void record_return(const Fields& fields, Training& training, const Vertex& a, co
 
 // The lamp's own cell learns where W lies, too: it guides emission.
 void record_emission(const Fields& fields, Training& training, Sightings& sightings, const Vertex& lamp,
-                     const Vertex& first, float brought) {
+                     const Vertex& first, const Passed& passed, float brought) {
   if (lamp.infinite || lamp.point.delta_position) return;
   const Place at = find(fields.table, lamp.p, lamp.ng);
   if (at.missing) record_missing(sightings, at.missing, lamp.ng);
   if (at.cell == none) return;
   record_visit(training.w, at.cell);
   const Vec3 d = -first.guide.wo;
-  const End to = end_of(fields, first, d, Side::light);
+  const End to = end_of(fields, first, d, Side::light, passed);
   const float cosine = glm::dot(lamp.ng, d);
   if (!(to.cosine > 1e-4f) || !(cosine > 0)) return;
   const double pdf = first.own * first.distance2 / to.cosine;
   const float value = fields.rule == Rule::returned ? brought : to.w;
   record(fields, fields.w, training.w, at.cell,
-         {lamp.p, d, std::sqrt(first.distance2), value, float(cosine * inv_pi / pdf)});
+         {lamp.p, d, std::sqrt(first.distance2) + passed.distance, value, float(cosine * inv_pi / pdf)});
 }
 
 // What vertex i would pass on to the one before it.
 Passed passed_by(const Fields& fields, const Subpath& subpath, int i, Side side, const Passed& next) {
-  if (i + 1 >= subpath.n || !passes(subpath[i].guide)) return {};
+  if (!passes(subpath[i].guide)) return {};
+  if (i + 1 >= subpath.n) return {subpath[i].received, 0, 0};
   const float here = luminance(subpath[i].beta);
   if (!(here > 0)) return {};
   const Vertex& after = subpath[i + 1];
   const End e = end_of(fields, after, after.guide.wo, side, next);
   const float share = luminance(after.beta) / here;
-  return {share * e.q, share * e.w};
+  const bool straight = glm::dot(subpath[i].guide.wo, after.guide.wo) > straight_on;
+  return {share * e.q, share * e.w, straight ? std::sqrt(after.distance2) + next.distance : 0};
 }
 
 // What a vertex scatters back along the path, by what the path itself went on to find; next is the same of the vertex
@@ -105,7 +111,7 @@ Passed passed_by(const Fields& fields, const Subpath& subpath, int i, Side side,
 float brought_by(const Subpath& subpath, int i, float next) {
   const Vertex& v = subpath[i];
   float sum = v.shines;
-  if (connectable(v.guide)) sum += scatters(v.guide) * v.received;
+  sum += connectable(v.guide) ? scatters(v.guide) * v.received : v.received;
   const float here = luminance(v.beta);
   if (i + 1 < subpath.n && here > 0) sum += next * luminance(subpath[i + 1].beta) / here;
   return sum;
@@ -133,7 +139,7 @@ void record_subpath(const Fields& fields, Training& training, Sightings& sightin
       record_segment(fields, training, a, b, side, passed);
   }
   if (side == Side::light && subpath.n > 1)
-    record_emission(fields, training, sightings, subpath[0], subpath[1], brought);
+    record_emission(fields, training, sightings, subpath[0], subpath[1], passed, brought);
 }
 
 }  // namespace ajar

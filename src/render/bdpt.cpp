@@ -194,22 +194,46 @@ void join_all(Work& work) {
     }
 }
 
+// s = 0: the camera subpath left the scene.
 void join_escapes(Work& work, const Walk& walk) {
-  const Subpath& camera = work.scratch.camera;
+  Subpath& camera = work.scratch.camera;
   Candidate c;
+  float found = 0;
   for (const uint32_t light : work.job.scene->infinite_lights)
-    if (join_escape(*work.job.scene, work.job.walk.fields, light, camera, walk, c)) add(work, c, 0, camera.n + 1);
+    if (join_escape(*work.job.scene, work.job.walk.fields, light, camera, walk, c)) {
+      add(work, c, 0, camera.n + 1);
+      if (work.sample.teaches) found += luminance(c.value) * weigh(work, c);
+    }
+  Vertex& last = camera[camera.n - 1];
+  if (found > 0 && camera.n > 1 && !connectable(last.guide)) last.received = found / luminance(last.beta);
   charge_join(work.scratch, 0, camera.n + 1);
 }
 
-// What the camera subpath teaches, and that the lens sees its first vertex.
+// Density of the pixel's samples per area at vertex i, which the lens sees: itself, or by way of delta events, which
+// are taken to leave light as straight as panes and flat mirrors do.
+float seen_density(const Camera& lens, const Subpath& camera, int i) {
+  if (i == 1) return float(camera[1].own);
+  const auto cosine = [](const Vertex& v) { return std::abs(glm::dot(v.ng, v.guide.wo)); };
+  float distance = glm::length(camera[1].p - camera[0].p);
+  double share = luminance(camera[i].beta) / luminance(camera[1].beta);
+  for (int k = 2; k <= i; ++k) {
+    distance += std::sqrt(camera[k].distance2);
+    share *= camera[k].own * camera[k].distance2 / cosine(camera[k]);  // the event's probability
+  }
+  const Vec3 at = camera[0].p - distance * camera[1].guide.wo;
+  return float(share) * raster_factor(lens, camera[0].p, at) * cosine(camera[i]);
+}
+
+// What the camera subpath teaches, and that the lens sees its first vertex that scatters light.
 void teach_camera(Work& work) {
   const Job& job = work.job;
   const Fields& fields = *job.walk.fields;
   const Subpath& camera = work.scratch.camera;
-  if (camera.n > 1 && connectable(camera[1].guide) && camera[1].guide.cell != none)
-    record_direct(fields.w, job.training->w, camera[1].guide.cell,
-                  float(camera[1].own) * relative_importance(fields, camera[1].guide));
+  int i = 1;
+  while (i < camera.n && camera[i].seen && !connectable(camera[i].guide)) ++i;
+  if (i < camera.n && camera[i].seen && camera[i].guide.cell != none)
+    record_direct(fields.w, job.training->w, camera[i].guide.cell,
+                  seen_density(job.scene->camera, camera, i) * relative_importance(fields, camera[i].guide));
   record_subpath(fields, *job.training, work.scratch.sightings, camera, Side::camera);
 }
 

@@ -5,13 +5,15 @@
 namespace ajar {
 namespace {
 
-// What the light subpath brought to the first surface that it met, if it met one.
-void teach_start(const Work& work, const Subpath& light, const Walk& walk) {
+// What the light subpath brought to the first surface that scatters it, if it came to one: glass before it only passes
+// light on.
+void teach_start(const Work& work, const Subpath& light, const Walk& walk, bool arrived) {
   if (!work.sample.teaches || !work.job.guided) return;
   float brings = 0, per_watt = 0;
-  if (light.n > 1) {
-    const Vertex& first = light[1];
-    brings = promise(first.guide, first.beta).all, per_watt = promise(first.guide, Rgb(1)).all;
+  if (arrived) {
+    const Vertex& first = light[light.n - 1];
+    const float started = luminance(light[1].beta);
+    brings = promise(first.guide, first.beta).all, per_watt = started > 0 ? brings / started : 0;
   }
   record_start(*work.job.scene, *work.job.walk.fields, *work.job.training, walk.start, brings, per_watt);
   charge(work.scratch, work.scratch.ledger->learn_ticks);
@@ -27,15 +29,18 @@ void trace_light_subpath(Work& work) {
   if (!start_light(*job.scene, job.walk, sampler, light, walk)) return;
   ++work.scratch.counters.light_paths;
   Surface surface;
+  bool arrived = false;
   while (light.n < job.walk.max_edges) {
-    if (light.n > 1 && !scatter(job.walk, sampler, light, walk)) return;
+    if (light.n > 1 && !scatter(job.walk, sampler, light, walk)) break;
     ++work.scratch.counters.light_rays;
     const bool hit = step(*job.scene, *job.accel, job.walk, light, walk, surface);
     charge(work.scratch, work.scratch.ledger->light_ticks);
-    if (light.n == (hit ? 2 : 1)) teach_start(work, light, walk);
-    if (!hit) return;
+    if (!hit) break;
+    const bool scatters_here = connectable(light[light.n - 1].guide);
+    if (scatters_here && !arrived) teach_start(work, light, walk, true);
+    arrived |= scatters_here;
     work.light_share = walk.first_share;
-    if (job.merges_alone || !connectable(light[light.n - 1].guide)) continue;
+    if (job.merges_alone || !scatters_here) continue;
     Candidate c;
     const bool seen =
         join_camera(*job.scene, work.sample.lens, light, light.n, work.light_share, job.walk.light_paths, c) &&
@@ -43,6 +48,7 @@ void trace_light_subpath(Work& work) {
     charge_join(work.scratch, light.n, 1);
     teach_direct(work, light[light.n - 1], seen ? luminance(c.arrives) : 0);
   }
+  if (!arrived) teach_start(work, light, walk, false);
 }
 
 void trace_light_half(const Job& job, Sample& sample, Scratch& scratch) {

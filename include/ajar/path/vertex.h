@@ -25,8 +25,9 @@ struct Vertex {
   bool seen = false;        ///< by the lens, itself or by way of delta events; camera subpaths
   bool infinite = false;    ///< vertex 0: a direction rather than a place
   uint8_t next_events = 1;  ///< rays to lights from here, also where none was sent by chance; camera subpaths
-  float received =
-      0;             ///< luminance of what next-event estimation (the lens) brought here, per area; for Rule::returned
+  /// Luminance of what next-event estimation (the lens) brought here, per area, for Rule::returned; of what only passes
+  /// light on: of the infinite lights that the subpath escaped to from here, times their MIS weights.
+  float received = 0;
   float shines = 0;  ///< luminance of the light that the subpath ran into here, times its MIS weight
   uint32_t shape = none;
   uint32_t instance = none;

@@ -7,7 +7,8 @@
 namespace ajar {
 
 inline bool turns_through(const Lobe& lobe) {
-  const bool trans = lobe.kind == LobeKind::principled && lobe.principled.spec_trans > 0;
+  const bool trans =
+      lobe.kind == LobeKind::principled && lobe.principled.spec_trans > 0 && lobe.principled.metallic < 1;
   return trans || lobe.kind == LobeKind::dielectric || lobe.kind == LobeKind::thindielectric ||
          lobe.kind == LobeKind::roughdielectric || lobe.kind == LobeKind::difftrans;
 }
