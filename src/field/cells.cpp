@@ -53,8 +53,10 @@ glm::uvec3 finest(const CellTable& table, const Vec3& p) {
   return glm::uvec3(glm::clamp(q, Vec3(0), Vec3(float(most_coordinate))));
 }
 
-size_t top_cube(const glm::uvec3& finest) {
-  const glm::uvec3 c = glm::min(finest >> uint32_t(most_cell_levels), glm::uvec3(top_cubes));
+// Number of the cube of level 0 among those that walls are looked for in; past the last one elsewhere.
+size_t top_cube(const CellTable& table, const glm::uvec3& finest) {
+  const glm::uvec3 from_first = (finest >> uint32_t(most_cell_levels)) - table.first;  // wraps around before it
+  const glm::uvec3 c = glm::min(from_first, glm::uvec3(top_cubes));
   if (c.x == top_cubes || c.y == top_cubes || c.z == top_cubes) return size_t(top_cubes) * top_cubes * top_cubes;
   return (size_t(c.z) * top_cubes + c.y) * top_cubes + c.x;
 }
@@ -62,7 +64,7 @@ size_t top_cube(const glm::uvec3& finest) {
 // Which part of its cube of level 0 a point is in.
 uint32_t compartment_of(const CellTable& table, const glm::uvec3& finest, const Vec3& p) {
   if (table.cuts.empty()) return 0;
-  const size_t cube = top_cube(finest);
+  const size_t cube = top_cube(table, finest);
   int32_t at = cube < table.compartments.size() ? table.compartments[cube] : ~0;
   while (at >= 0) {
     const CellCut& cut = table.cuts[size_t(at)];
@@ -141,6 +143,13 @@ CellTable make_cell_table(const Vec3& center, float radius) {
   return t;
 }
 
+void focus(CellTable& table, const Vec3& center, float radius) {
+  const CellTable around = make_cell_table(center, radius);
+  table.width = around.width;
+  table.first = (most_coordinate >> most_cell_levels) / 2 - top_cubes / 2;
+  table.origin = around.origin - float(table.first) * table.width;
+}
+
 CellTable make_probe_table(std::vector<Probe> probes, double area) {
   CellTable t;
   t.width = std::max(float(std::sqrt(area / double(std::max(probes.size(), size_t(1))))), 1e-18f);
@@ -150,7 +159,7 @@ CellTable make_probe_table(std::vector<Probe> probes, double area) {
   return t;
 }
 
-size_t top_cube(const CellTable& table, const Vec3& p) { return top_cube(finest(table, p)); }
+size_t top_cube(const CellTable& table, const Vec3& p) { return top_cube(table, finest(table, p)); }
 
 Place find(const CellTable& table, const Vec3& p, const Vec3& n) {
   if (!table.probes.empty()) return find_probe(table, p, n);

@@ -12,7 +12,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind fields_kind = {"AJARfd10", "file of fields", "make one with --save-fields",
+constexpr FileKind fields_kind = {"AJARfd11", "file of fields", "make one with --save-fields",
                                   "learn the fields again with --save-fields"};
 
 bool is_amount(float x) { return x >= 0 && x < infinity; }
@@ -170,7 +170,7 @@ void read(Reader& r, size_t cells, uint32_t most, LearnedLights& v) {
   for (const LightCut& c : v.cuts) {
     r.require(v.entries[c.first].before == 0);
     for (uint32_t i = c.first + 1; i < c.first + c.count; ++i)
-      r.require(v.entries[i].before >= v.entries[i - 1].before && v.entries[i].before < 1);
+      r.require(v.entries[i].before >= v.entries[i - 1].before && v.entries[i].before <= 1);
   }
 }
 
@@ -233,7 +233,7 @@ void read_compartments(Reader& r, CellTable& table) {
 
 void write(Writer& w, const Fields& fields) {
   w.value(fields.structure), w.value(fields.rule);
-  w.value(fields.generation), w.value(fields.table.origin), w.value(fields.table.width);
+  w.value(fields.generation), w.value(fields.table.origin), w.value(fields.table.width), w.value(fields.table.first);
   w.value(uint64_t(fields.table.probes.size()));
   for (const Probe& p : fields.table.probes) w.value(p.p), w.value(p.n), w.value(p.axis);
   w.array(fields.table.cuts), w.array(fields.table.compartments);
@@ -262,7 +262,7 @@ void read(Reader& r, Fields& fields) {
   fields.table = make_cell_table(Vec3(0), 1);
   r.value(fields.structure), r.value(fields.rule);
   r.require(fields.structure <= Structure::probes && fields.rule <= Rule::returned);
-  r.value(fields.generation), r.value(fields.table.origin), r.value(fields.table.width);
+  r.value(fields.generation), r.value(fields.table.origin), r.value(fields.table.width), r.value(fields.table.first);
   r.require(is_finite(fields.table.origin) && is_amount(fields.table.width) &&
             is_amount(float(1 << most_cell_levels) / fields.table.width));
   fields.table.probes.resize(r.count(sizeof(Probe)));

@@ -17,6 +17,8 @@ namespace {
 
 constexpr uint32_t walks = 2048, bounces = 16;  // of the camera, and as many of the lights
 constexpr size_t most_points = 64;              // of a cube
+constexpr float most_middle = 0.2f;             // of the scene's radius: larger ones are the scene
+constexpr float largest_around = 20;            // scene's radius over the middle's: cubes are there for no more
 
 // A point on a surface and its normal on the side where light can come from.
 struct Spot {
@@ -64,10 +66,45 @@ void walk(const Scene& scene, const Accel& accel, Side side, uint32_t number, st
   }
 }
 
-// What walks found, cube by cube; some of it where there is much.
-std::vector<std::vector<Spot>> spots_of_cubes(const Scene& scene, const Accel& accel, const CellTable& table) {
-  std::vector<std::vector<Spot>> found(2 * walks), cubes(table.compartments.size());
+// What walks of the camera (even) and of the lights (odd) found.
+using Found = std::vector<std::vector<Spot>>;
+Found find_spots(const Scene& scene, const Accel& accel) {
+  Found found(2 * walks);
   parallel_for(2 * walks, [&](uint32_t i) { walk(scene, accel, i % 2 ? Side::light : Side::camera, i / 2, found[i]); });
+  return found;
+}
+
+// The part of the scene where nearly all of the camera's walks go.
+struct Middle {
+  Vec3 center{0};
+  float radius = infinity;
+};
+
+Middle middle_of(const Found& found) {
+  constexpr size_t least_spots = 256;
+  constexpr float left_out = 0.05f, margin = 1.3f;  // of the spots on either side; around what is left
+  Middle m;
+  Vec3 half(0);
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<float> x;
+    for (size_t i = 0; i < found.size(); i += 2)
+      for (const Spot& s : found[i]) x.push_back(s.p[axis]);
+    if (x.size() < least_spots) return m;
+    const auto at = [&](float share) {
+      const auto nth = x.begin() + std::ptrdiff_t(share * float(x.size() - 1));
+      std::nth_element(x.begin(), nth, x.end());
+      return *nth;
+    };
+    const float low = at(left_out), high = at(1 - left_out);
+    m.center[axis] = 0.5f * (low + high), half[axis] = 0.5f * (high - low);
+  }
+  m.radius = margin * std::max({half.x, half.y, half.z});
+  return m;
+}
+
+// Cube by cube; some of it where there is much.
+std::vector<std::vector<Spot>> spots_of_cubes(const Found& found, const CellTable& table) {
+  std::vector<std::vector<Spot>> cubes(table.compartments.size());
   for (const std::vector<Spot>& spots : found)
     for (const Spot& s : spots)
       if (const size_t cube = top_cube(table, s.p); cube < cubes.size()) cubes[cube].push_back(s);
@@ -176,7 +213,18 @@ int32_t cut(const Sight& s, const std::vector<uint32_t>& of, float edge, Sides& 
 
 void cut_along_walls(const Scene& scene, const Accel& accel, CellTable& table) {
   table.compartments.assign(size_t(top_cubes) * top_cubes * top_cubes, ~0);
-  const std::vector<std::vector<Spot>> cubes = spots_of_cubes(scene, accel, table);
+  const Found found = find_spots(scene, accel);
+  Vec3 center = scene.center;
+  float radius = scene.radius;
+  // Around a house there may be a lawn that is much larger: cubes of its size would hold whole rooms. Not under a sky:
+  // docs/results/fields.md.
+  const Middle m = scene.infinite_lights.empty() ? middle_of(found) : Middle{};
+  if (m.radius < most_middle * scene.radius) {
+    const float least = scene.radius / largest_around;
+    focus(table, m.center, std::max(m.radius, least));
+    center = m.center, radius = std::min(2 * std::max(m.radius, least), scene.radius);
+  }
+  const std::vector<std::vector<Spot>> cubes = spots_of_cubes(found, table);
   std::vector<std::vector<CellCut>> cuts(cubes.size());
   parallel_for(cubes.size(), [&](size_t c) {
     if (cubes[c].size() < 8) return;
@@ -195,7 +243,7 @@ void cut_along_walls(const Scene& scene, const Accel& accel, CellTable& table) {
       table.cuts.push_back(k);
     }
   }
-  table.portals = find_portals(table.cuts, scene.center, scene.radius, table.width);
+  table.portals = find_portals(table.cuts, center, radius, table.width);
 }
 
 }  // namespace ajar

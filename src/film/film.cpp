@@ -92,7 +92,8 @@ void finish_pass(Film& film) {
 
 Picture develop(const Film& film) {
   Picture out{film.width, film.height, {"R", "G", "B"}, std::vector<float>(3 * film.pixels())};
-  const double share = share_of_pass(film), per_path = 1.0 / double(film.pixels());
+  const double share = share_of_pass(film);
+  const float per_path = 1 / float(film.pixels());
   const glm::ivec2 shift = tile_shift(film);
   const std::vector<float> most = film.brightest.empty() ? std::vector<float>() : limits(film);
   for (int y = 0; y < film.height; ++y)
@@ -101,10 +102,12 @@ Picture develop(const Film& film) {
       const bool done = is_done(film, shift, x, y);
       glm::dvec3 value(0);
       const double n = film.passes + (done ? 1.0 : 0.0);
-      const Rgb now = most.empty() ? film.camera[i] : limited(film.camera[i], most[i]);
-      if (n > 0) value += (film.camera_sum[i] + (done ? glm::dvec3(now) : glm::dvec3(0))) / n;
+      const Rgb camera = done ? film.camera[i] : Rgb(0);
+      const Rgb splat = film.splats ? film.splat[i] * per_path : Rgb(0);
+      const double kept = most.empty() ? 1 : double(kept_share(camera + splat, most[i]));  // of the pass at work
+      if (n > 0) value += (film.camera_sum[i] + glm::dvec3(camera) * kept) / n;
       if (film.splats && film.passes + share > 0)
-        value += (film.splat_sum[i] + glm::dvec3(film.splat[i]) * per_path) / (film.passes + share);
+        value += (film.splat_sum[i] + glm::dvec3(splat) * kept) / (film.passes + share);
       if (!most.empty() && n > 0) value -= excess(film, i, most[i]) / n;
       for (int c = 0; c < 3; ++c) out.pixels[3 * i + c] = float(value[c]);
     }

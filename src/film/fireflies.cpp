@@ -61,16 +61,16 @@ std::vector<float> limits(const Film& film) {
   return each_pixel(film, [&](int x, int y) { return limit_at(film, x, y); });
 }
 
-Rgb limited(const Rgb& value, float limit) {
+float kept_share(const Rgb& value, float limit) {
   const float l = luminance(value);
-  return l > limit ? value * (limit / l) : value;
+  return l > limit ? limit / l : 1;
 }
 
 glm::dvec3 excess(const Film& film, size_t pixel, float limit) {
   glm::dvec3 sum(0);
   for (int k = 0; k < kept; ++k) {
     const Rgb& value = film.brightest[kept * pixel + k].value;
-    sum += glm::dvec3(value - limited(value, limit));
+    sum += glm::dvec3(value * (1 - kept_share(value, limit)));
   }
   return sum;
 }

@@ -10,7 +10,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind checkpoint_kind = {"AJARck24", "checkpoint", "render once with --checkpoint",
+constexpr FileKind checkpoint_kind = {"AJARck25", "checkpoint", "render once with --checkpoint",
                                       "start again without --resume"};
 
 // One list of fields for both ways.

@@ -42,8 +42,9 @@ Learning start_learning(const Scene& scene, const Film& film, const LearnOptions
 }
 
 void go_on_from(StoredFields stored, const LearnOptions& options, Learning& l, Film& film) {
-  // Importance counts pixels, and this film may have more or fewer of them.
+  // Importance counts pixels, and this film may have more or fewer of them; and lamps may shine more or less.
   const double scale = l.fields.w.unit / stored.fields.w.unit;
+  stored.fields.q.unit = l.fields.q.unit;
   l.fields = std::move(stored.fields);
   l.fields.rule = options.rule;
   Field& w = l.fields.w;

@@ -8,7 +8,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind carried_kind = {"AJARan06", "carried field file", "an animation leaves one beside its frames",
+constexpr FileKind carried_kind = {"AJARan07", "carried field file", "an animation leaves one beside its frames",
                                    "remove it: the fields are learned again from the first frame on"};
 
 // Share of a frame's time that its lessons may take.

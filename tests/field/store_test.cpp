@@ -303,7 +303,7 @@ TEST_F(Store, CutsOfLightsThatCannotBeAreAnError) {
       {"infinite weight", [](LearnedLights& v, LearnedLights&) { v.entries[0].weight = infinity; }},
       {"shares that do not begin at 0", [](LearnedLights& v, LearnedLights&) { v.entries[0].before = 0.1f; }},
       {"shares that fall", [](LearnedLights& v, LearnedLights&) { v.entries.back().before = -0.5f; }},
-      {"shares beyond 1", [](LearnedLights& v, LearnedLights&) { v.entries.back().before = 1; }},
+      {"shares beyond 1", [](LearnedLights& v, LearnedLights&) { v.entries.back().before = 1.5f; }},
       {"a share of NaN", [](LearnedLights& v, LearnedLights&) { v.entries.back().before = std::nanf(""); }},
       {"less than no evidence", [](LearnedLights& v, LearnedLights&) { v.evidence[0].tried = -1; }},
       {"evidence of NaN", [](LearnedLights& v, LearnedLights&) { v.evidence[0].square = std::nanf(""); }},

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "ajar/scene/build.h"
 
 namespace ajar {
@@ -35,6 +37,25 @@ TEST(Walls, WhatASlabHidesIsFoundWithinACube) {
   }
   EXPECT_GT(parted, 0) << "the slab should cross cubes here";
   EXPECT_EQ(same, 0);
+}
+
+// Two rooms on a lawn that is much larger: cubes are as small as they would be without it, where paths go.
+TEST(Walls, AreFoundInAHouseOnALawn) {
+  const float bare = cut_table(two_rooms(5)).width;
+  for (const float size : {30.0f, 60.0f, 400.0f}) {
+    Scene scene = two_rooms(5);
+    add_quad(scene, {-size, -0.5f, size}, {2 * size, 0, 0}, {0, 0, -2 * size}, add_diffuse(scene, Rgb(0.5f)));
+    finish(scene);
+    const CellTable t = cut_table(scene);
+    EXPECT_LT(t.width, std::max(1.5f * bare, scene.radius / 100)) << size;
+    EXPECT_FALSE(t.portals.empty()) << size;
+    const Vec3 n(0, 1, 0);  // the lawn has cells of its own on all sides, and its corners none that it shares
+    std::set<CellKey> keys;
+    for (const float x : {-1.0f, -0.5f, 0.0f, 1.0f})
+      for (const float z : {-1.0f, 0.0f, 1.0f})
+        keys.insert(find(t, {0.99f * size * x, -0.5f, 0.99f * size * z}, n).missing);
+    EXPECT_EQ(keys.size(), 12u) << size;
+  }
 }
 
 TEST(Walls, OneRoomIsNotCut) {

@@ -11,10 +11,10 @@
 namespace ajar {
 namespace {
 
-Film limited_film(int width, int height) {
+Film limited_film(int width, int height, bool splats = false) {
   Camera camera;
   camera.crop_width = camera.width = width, camera.crop_height = camera.height = height;
-  Film film = make_film(camera, make_filter(FilterKind::box), false);
+  Film film = make_film(camera, make_filter(FilterKind::box), splats);
   limit_fireflies(film);
   return film;
 }
@@ -105,6 +105,17 @@ TEST(Fireflies, OneSparkIsTakenBackToTwiceWhatIsAround) {
   EXPECT_FLOAT_EQ(channel(found, 4, 3), 1);
   film.camera = spark, film.chunks = chunk_count(film);
   EXPECT_FLOAT_EQ(channel(develop(film), 3, 3), 13 / 11.0f) << "the pass at work is limited as well";
+}
+
+// What light subpaths bring counts with what the camera's do, in the pass at work too.
+TEST(Fireflies, SplatsOfThePassAtWorkAreLimited) {
+  Film film = limited_film(8, 8, true);
+  const std::vector<Rgb> image(64, Rgb(1));
+  for (int n = 0; n < 9; ++n) add_pass(film, image);
+  film.camera = image, film.chunks = chunk_count(film);
+  film.splat[27] = Rgb(1e6f * 64);
+  EXPECT_FLOAT_EQ(channel(develop(film), 3, 3), 1.1f) << "nine times 1, once 2";
+  EXPECT_FLOAT_EQ(channel(develop(film), 4, 3), 1);
 }
 
 // However heavy the tail, what is taken away is of three passes at most: with a mean, it is nothing in the end.

@@ -149,6 +149,23 @@ TEST(Sequence, CarriedFieldsLearnMore) {
   EXPECT_LT(doubted, 0.6 * kept);
 }
 
+// A lamp that is off in the first frame: what later ones teach is not cut to its measure.
+TEST(Sequence, LampsMayBeginDark) {
+  Scene dark = room_at(0);
+  dark.lights[0].radiance = Slot(1e-20f);
+  finish(dark);
+  const Scene lit = room_at(0);
+  const Accel accel(dark);
+  const RenderOptions options = statistical("guided-bdpt");
+  const Carried first{0, *teach(dark, accel, options, usual(), nullptr, {}, 0, {})};
+  ASSERT_LT(first.fields.q.unit, 1e-15);
+  const Fields next = *teach(lit, accel, options, usual(), &first, {}, 1, {});
+  EXPECT_EQ(next.q.unit, start_fields(lit, 144, options.learn).q.unit);
+  float direct = 0;  // what comes from further away takes a lesson for each edge
+  for (const FieldCell& c : next.q.cells) direct = std::max(direct, c.direct);
+  EXPECT_GT(direct, 0.1f);
+}
+
 // What teaches is in no image, so that every pass beyond the lessons would be lost.
 TEST(Sequence, TeachesInAsManyPassesAsItSays) {
   const Scene scene = room_at(0);

@@ -19,7 +19,7 @@ using CellKey = uint64_t;
 inline constexpr int most_cell_levels = 9;
 /// Of a cube of level 0.
 inline constexpr int most_compartments = 16;
-/// Cubes of level 0 along an axis.
+/// Cubes of level 0 along an axis, where walls are looked for.
 inline constexpr int top_cubes = 13;
 
 /// A plane across a cube of level 0. What is on either side of it: another cut, or ~compartment.
@@ -56,6 +56,7 @@ struct CellTable {
   };
   Vec3 origin{0};
   float width = 1;                         ///< edge of the cubes of level 0
+  uint32_t first = 0;                      ///< coordinate of the first of the top_cubes, along all axes
   std::vector<Slot> slots;                 ///< a power of two of them
   std::vector<std::array<Part, 8>> parts;  ///< of every divided cell, by octants; the first is nobody's
   std::vector<CellCut> cuts;
@@ -74,6 +75,8 @@ struct Place {
 };
 
 CellTable make_cell_table(const Vec3& center, float radius);
+/// Gives it smaller cubes around a part of the scene; the rest has cubes of the same size. Nothing may be in it yet.
+void focus(CellTable& table, const Vec3& center, float radius);
 /// area: of the surfaces that the probes stand for [m^2].
 CellTable make_probe_table(std::vector<Probe> probes, double area);
 /// Which of 27 ranges of directions a normal is in; no cell holds two of them.

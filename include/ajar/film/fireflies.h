@@ -17,7 +17,7 @@ void note(Film& film, size_t pixel, const Rgb& value);
 std::vector<float> limits(const Film& film);
 /// What the passes brought a pixel beyond its limit, all together.
 glm::dvec3 excess(const Film& film, size_t pixel, float limit);
-/// The value, darkened to that luminance where it has more.
-Rgb limited(const Rgb& value, float limit);
+/// What of a value is left where it is darkened to that luminance: 1 where it has less.
+float kept_share(const Rgb& value, float limit);
 
 }  // namespace ajar

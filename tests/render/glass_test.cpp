@@ -1,0 +1,74 @@
+// Fields learn of what glass alone connects: joins cannot pass it, so that the paths themselves have to tell.
+#include <gtest/gtest.h>
+
+#include "kit/stage.h"
+#include "measure.h"
+
+namespace ajar {
+namespace {
+
+using namespace kit;
+
+uint32_t add_pane_material(Scene& scene) {
+  Material m;
+  m.kind = MaterialKind::thindielectric;
+  return add_material(scene, m);
+}
+
+Fields learned(const Scene& scene) {
+  const Accel accel(scene);
+  RenderOptions options = statistical("guided-bdpt");
+  options.spp = 6;
+  return rendered(scene, accel, options).learning.fields;
+}
+
+// What a field's vertices receive at once, in the mean over its visits.
+double direct(const Field& field) {
+  double sum = 0, visits = 0;
+  for (const FieldCell& c : field.cells) sum += double(c.direct) * double(c.visits), visits += double(c.visits);
+  return sum / visits;
+}
+
+double total(const Field& field) {
+  double sum = 0;
+  for (const FieldCell& c : field.cells) sum += double(c.total);
+  return sum;
+}
+
+TEST(BehindGlass, TheLensGivesImportanceToWhatItSees) {
+  Scene bare = stage(24), glazed = stage(24);
+  add_quad(glazed, {-3, -3, 2}, {6, 0, 0}, {0, 6, 0}, add_pane_material(glazed));
+  finish(bare), finish(glazed);
+  const double without = direct(learned(bare).w), with = direct(learned(glazed).w);
+  EXPECT_GT(with, 0.1 * without);  // where light subpaths come, they find that the lens is hidden
+  EXPECT_LT(with, 1.1 * without);
+}
+
+// Through a dome of glass the sky lights what is under it, and light subpaths start where they come through.
+TEST(BehindGlass, TheSkyShines) {
+  Scene scene = under_sky(LightKind::constant);
+  add_sphere(scene, scene.center, 4 * scene.radius, add_pane_material(scene));
+  finish(scene);
+  const Fields fields = learned(scene);
+  EXPECT_GT(total(fields.q), 0);
+  EXPECT_TRUE(std::any_of(fields.disk.mean.begin(), fields.disk.mean.end(), [](float m) { return m > 0; }));
+}
+
+// A lamp in a ball of glass sends its light where importance lies beyond.
+TEST(BehindGlass, LampsSendLightToWhatMatters) {
+  const auto at_lamp = [](const Scene& scene) {
+    const Fields fields = learned(scene);
+    const Mesh& mesh = scene.meshes[scene.shapes[scene.lights[0].shape].mesh];
+    const Place at = find(fields.table, mesh.positions[0], {0, -1, 0});
+    return at.cell == none ? 0 : fields.w.cells[at.cell].total;
+  };
+  Scene bare = stage(24), covered = stage(24);
+  add_sphere(covered, {0, 0.98f, 0}, 0.5f, add_pane_material(covered));
+  finish(bare), finish(covered);
+  const float without = at_lamp(bare), with = at_lamp(covered);
+  EXPECT_GT(with, 0.5f * without);
+  EXPECT_LT(with, 4 * without);
+}
+
+}  // namespace
+}  // namespace ajar
