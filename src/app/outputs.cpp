@@ -145,10 +145,7 @@ void Log::write(const RenderState& state, bool last) {
   nlohmann::ordered_json j = {
       {"seconds", state.stats.seconds}, {"cpu_seconds", state.stats.cpu_seconds}, {"spp", state.film.passes}};
   if (const double error = estimated_error(state.film); error < infinity) j["estimated_relmse"] = error;
-  try {
-    if (reference) j["error"] = nlohmann::ordered_json::parse(to_json(compare(develop(state.film), *reference)));
-  } catch (const std::bad_alloc&) {  // the render goes on
-  }
+  if (reference) j["error"] = nlohmann::ordered_json::parse(to_json(compare(develop(state.film), *reference)));
   j["phases_cpu"] = phases_json(state.stats.cpu_seconds, state.stats.learn_cpu_seconds, state.stats.ledger);
   add_account(j, state);
   errno = 0;
@@ -238,9 +235,6 @@ void Saver::save(const RenderState& state) {
     save_checkpoint(path, key, state);
   } catch (const Error& error) {
     if (!failed) clear_line(), say(stderr, "ajar: warning: {}; the render goes on\n", error.what());
-    failed = true;
-  } catch (const std::bad_alloc&) {
-    if (!failed) clear_line(), say(stderr, "ajar: warning: out of memory for {}; the render goes on\n", path);
     failed = true;
   }
 }

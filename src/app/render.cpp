@@ -143,16 +143,23 @@ void trace(const RenderArguments& a, const Scene& scene, const Accel& accel, Run
   Progress progress = make_progress(a.quiet);
   Saver saver{a.checkpoint, checkpoint_key(run, state.film), state.stats.seconds};
   const RenderOptions limits = without_start(budget, run);
+  bool starved = false;
+  const auto beside = [&](const auto& work) {  // memory that it lacks is no reason to lose the image
+    try {
+      work();
+    } catch (const std::bad_alloc&) {
+      if (!starved)
+        clear_line(), say(stderr, "ajar: warning: out of memory for progress, log or checkpoint; the render goes on\n");
+      starved = true;
+    }
+  };
   render(scene, accel, limits, state, [&](const RenderState& s) {
     if (is_over(limits, s.stats, training_share)) end_training(state.learning);
-    show(progress, budget, s);
-    log.write(s, false);
-    saver.save(s);
+    beside([&] { show(progress, budget, s), log.write(s, false), saver.save(s); });
     return !stop_asked();
   });
   run.interrupted = stop_asked();
-  finish(progress, budget, state, !run.interrupted);
-  log.write(state, true);
+  beside([&] { finish(progress, budget, state, !run.interrupted), log.write(state, true); });
 }
 
 void write_all(const RenderArguments& a, const Scene& scene, const Accel& accel, Run& run, RenderState& state,

@@ -8,27 +8,8 @@ constexpr size_t most_entries = 1 << 23;  // of positive weight, each of which i
 
 double clean(float w) { return w > 0 && w < infinity ? double(w) : 0; }
 
-// Last of n entries whose cumulative sum does not exceed u: never one of width zero, as cdf[n] = 1 > u. Without
-// branches.
-uint32_t find(const float* cdf, uint32_t n, float u) {
-  uint32_t first = 0;
-  while (n > 1) {
-    const uint32_t half = n / 2;
-    first += cdf[first + half] <= u ? half : 0;
-    n -= half;
-  }
-  return first;
-}
-
-uint32_t find_and_remap(const float* cdf, uint32_t n, float& u) {
-  const uint32_t i = find(cdf, n, u);
-  u = std::min((u - cdf[i]) / (cdf[i + 1] - cdf[i]), one_minus_epsilon);
-  return i;
-}
-
-}  // namespace
-
-// Positive weights get at least one step: rounded sums first, pushed apart upwards, then back downwards from 1.
+// Writes n + 1 cumulative sums and returns the total. Positive weights get at least one step: rounded sums first,
+// pushed apart upwards, then back downwards from 1.
 double cumulate(std::span<const float> weights, float* cdf) {
   const size_t n = weights.size();
   double total = 0;
@@ -54,6 +35,26 @@ double cumulate(std::span<const float> weights, float* cdf) {
   for (size_t i = 1; i <= n; ++i) cdf[i] = float(in_steps[i]) * float(1 / steps);
   return total;
 }
+
+// Last of n entries whose cumulative sum does not exceed u: never one of width zero, as cdf[n] = 1 > u. Without
+// branches.
+uint32_t find(const float* cdf, uint32_t n, float u) {
+  uint32_t first = 0;
+  while (n > 1) {
+    const uint32_t half = n / 2;
+    first += cdf[first + half] <= u ? half : 0;
+    n -= half;
+  }
+  return first;
+}
+
+uint32_t find_and_remap(const float* cdf, uint32_t n, float& u) {
+  const uint32_t i = find(cdf, n, u);
+  u = std::min((u - cdf[i]) / (cdf[i + 1] - cdf[i]), one_minus_epsilon);
+  return i;
+}
+
+}  // namespace
 
 Distribution::Distribution(std::span<const float> weights) {
   if (weights.empty()) return;

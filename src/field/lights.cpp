@@ -126,11 +126,11 @@ void append(std::vector<CutNode>& cut, const LightTree& tree, const LightRules& 
     for (CutNode& w : cut)
       w.share = power_of(tree, tree.nodes[w.node].first, tree.nodes[w.node].last) * double(w.weight);
   normalise(cut);
-  std::vector<float> shares, before(cut.size() + 1);
+  std::vector<float> shares;
   for (const CutNode& w : cut) shares.push_back(w.share > 0 ? float(std::max(w.share, 1e-30)) : 0);
-  cumulate(shares, before.data());  // however faint a lamp, it has its share of the starts
+  const Distribution choice(shares);  // however faint a lamp, it has its share of the starts
   for (size_t i = 0; i < cut.size(); ++i) {
-    to.entries.push_back({cut[i].node, tree.nodes[cut[i].node].first, cut[i].weight, before[i]});
+    to.entries.push_back({cut[i].node, tree.nodes[cut[i].node].first, cut[i].weight, choice.cdf[i]});
     to.evidence.push_back(cut[i].e);
   }
   to.cuts.push_back(c);

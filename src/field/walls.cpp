@@ -74,32 +74,44 @@ Found find_spots(const Scene& scene, const Accel& accel) {
   return found;
 }
 
-// The part of the scene where nearly all of the camera's walks go.
-struct Middle {
+struct Ball {
   Vec3 center{0};
   float radius = infinity;
 };
 
-Middle middle_of(const Found& found) {
+// The part of the scene where nearly all of the camera's walks go.
+Ball visited_part(const Found& found) {
   constexpr size_t least_spots = 256;
   constexpr float left_out = 0.05f, margin = 1.3f;  // of the spots on either side; around what is left
-  Middle m;
+  Ball b;
   Vec3 half(0);
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<float> x;
     for (size_t i = 0; i < found.size(); i += 2)
       for (const Spot& s : found[i]) x.push_back(s.p[axis]);
-    if (x.size() < least_spots) return m;
+    if (x.size() < least_spots) return b;
     const auto at = [&](float share) {
       const auto nth = x.begin() + std::ptrdiff_t(share * float(x.size() - 1));
       std::nth_element(x.begin(), nth, x.end());
       return *nth;
     };
     const float low = at(left_out), high = at(1 - left_out);
-    m.center[axis] = 0.5f * (low + high), half[axis] = 0.5f * (high - low);
+    b.center[axis] = 0.5f * (low + high), half[axis] = 0.5f * (high - low);
   }
-  m.radius = margin * std::max({half.x, half.y, half.z});
-  return m;
+  b.radius = margin * std::max({half.x, half.y, half.z});
+  return b;
+}
+
+// Around a house there may be a lawn that is much larger: cubes of its size would hold whole rooms. Not under a sky:
+// docs/results/fields.md. Returns what portals lie in.
+Ball focus_on_middle(const Scene& scene, const Found& found, CellTable& table) {
+  const Ball all{scene.center, scene.radius};
+  if (!scene.infinite_lights.empty()) return all;
+  const Ball middle = visited_part(found);
+  if (!(middle.radius < most_middle * scene.radius)) return all;
+  const float radius = std::max(middle.radius, scene.radius / largest_around);
+  focus(table, middle.center, radius);
+  return {middle.center, std::min(2 * radius, scene.radius)};
 }
 
 // Cube by cube; some of it where there is much.
@@ -214,16 +226,7 @@ int32_t cut(const Sight& s, const std::vector<uint32_t>& of, float edge, Sides& 
 void cut_along_walls(const Scene& scene, const Accel& accel, CellTable& table) {
   table.compartments.assign(size_t(top_cubes) * top_cubes * top_cubes, ~0);
   const Found found = find_spots(scene, accel);
-  Vec3 center = scene.center;
-  float radius = scene.radius;
-  // Around a house there may be a lawn that is much larger: cubes of its size would hold whole rooms. Not under a sky:
-  // docs/results/fields.md.
-  const Middle m = scene.infinite_lights.empty() ? middle_of(found) : Middle{};
-  if (m.radius < most_middle * scene.radius) {
-    const float least = scene.radius / largest_around;
-    focus(table, m.center, std::max(m.radius, least));
-    center = m.center, radius = std::min(2 * std::max(m.radius, least), scene.radius);
-  }
+  const Ball part = focus_on_middle(scene, found, table);
   const std::vector<std::vector<Spot>> cubes = spots_of_cubes(found, table);
   std::vector<std::vector<CellCut>> cuts(cubes.size());
   parallel_for(cubes.size(), [&](size_t c) {
@@ -243,7 +246,7 @@ void cut_along_walls(const Scene& scene, const Accel& accel, CellTable& table) {
       table.cuts.push_back(k);
     }
   }
-  table.portals = find_portals(table.cuts, center, radius, table.width);
+  table.portals = find_portals(table.cuts, part.center, part.radius, table.width);
 }
 
 }  // namespace ajar

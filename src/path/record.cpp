@@ -55,7 +55,7 @@ void record_segment(const Fields& fields, Training& training, const Vertex& a, c
   if (from.own + from.other <= 0) from.own = 1;
   const double density = from.own * pdf / from.cosine + to.other * back / to.cosine;
   const float at_a = weight_at(from, density);
-  const float distance = std::sqrt(b.distance2), beyond = passes(b.guide) ? distance + passed.distance : distance;
+  const float distance = std::sqrt(b.distance2), beyond = distance + passed.distance;
   const float at_b = weight_at(to, density);
   const FieldRecord records[] = {{Side::camera, from.cell, {a.p, d, beyond, to.q, at_a}},
                                  {Side::light, from.cell, {a.p, d, beyond, to.w, at_a}},

@@ -6,6 +6,7 @@
 
 #include "ajar/core/error.h"
 #include "ajar/core/files.h"
+#include "ajar/film/pyramid.h"
 #include "ajar/report/fields.h"
 #include "element.h"
 #include "race.h"
@@ -175,8 +176,8 @@ Json techniques_json(const Bench& bench, const Stand& stand, const Method& metho
     int s = 0, t = 0;
     char kind = 0;
     const std::string stem = file.stem().string();
-    if (stem.ends_with("-raw") || std::sscanf(stem.c_str(), "%c%dt%d", &kind, &s, &t) != 3) continue;
-    if (kind != 's' && kind != 'm') continue;
+    if (!is_layer(file.string()) || stem.ends_with("-raw")) continue;
+    std::sscanf(stem.c_str(), "%c%dt%d", &kind, &s, &t);
     list.push_back({{"s", s},
                     {"t", t},
                     {"merged", kind == 'm'},

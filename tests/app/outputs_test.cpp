@@ -3,56 +3,13 @@
 
 #include "app/outputs.h"
 
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "app/command_line.h"
 #include "app/progress.h"
-#include "kit/files.h"
+#include "outputs_stage.h"
 
 namespace ajar {
 namespace {
-
-namespace fs = std::filesystem;
-using Words = std::vector<std::string>;
-
-struct Outputs : testing::Test {
-  fs::path folder, before = fs::current_path();
-
-  void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder = fs::path(testing::TempDir()) / ("ajar outputs " + std::string(info->name()) + std::to_string(::getpid()));
-    fs::create_directories(folder / "there");
-    for (const char* name : {"box.xml", "room.xml"})
-      fs::copy_file(kit::source_path("scenes/box/" + std::string(name)), folder / name);
-    fs::current_path(folder);
-  }
-  void TearDown() override {
-    fs::current_path(before);
-    fs::remove_all(folder);
-  }
-
-  static void run(Words more) {
-    more.insert(more.begin(), {"render", "box.xml", "-q", "--size", "8x8"});
-    for (const Words& usual :
-         {Words{"--max-depth", "3"}, Words{"--integrator", "bdpt"}, Words{"--spp", "2"}, Words{"-o", "a.exr"}})
-      if (std::find(more.begin(), more.end(), usual[0]) == more.end())
-        more.insert(more.end(), usual.begin(), usual.end());
-    run_command_line(more);
-  }
-  static std::string error_of(const Words& more) {
-    try {
-      run(more);
-    } catch (const std::exception& e) {
-      return e.what();
-    }
-    return {};
-  }
-  static size_t count(const std::string& path = ".") { return size_t(std::distance(fs::directory_iterator(path), {})); }
-};
 
 TEST_F(Outputs, WrongOnesAreErrorsBeforeTheRender) {
   struct Case {
@@ -222,16 +179,6 @@ TEST_F(Outputs, StrategiesAreOfTheLastRenderAlone) {
   EXPECT_TRUE(fs::exists("t/s1t2.exr"));
 }
 
-// What no ray hits would be black.
-TEST_F(Outputs, LightsWithoutExtentNeedNextEventEstimation) {
-  const std::string text = kit::bytes_of("box.xml"), end = "</scene>";
-  for (const char* type : {"point", "spot", "projector", "directional"}) {
-    const std::string light = "<emitter type='" + std::string(type) + "'/>";
-    write_text("box.xml", text.substr(0, text.rfind(end)) + light + end);
-    EXPECT_NE(error_of({"--integrator", "path", "--no-next-event"}).find("without extent"), std::string::npos) << type;
-  }
-}
-
 TEST_F(Outputs, StrategiesOfLongPathsHaveNoImage) {
   run({"--max-depth", "-1", "--techniques", "t"});
   int longest = 0;
@@ -241,70 +188,6 @@ TEST_F(Outputs, StrategiesOfLongPathsHaveNoImage) {
     longest = std::max(longest, s + t);
   }
   EXPECT_EQ(longest, most_vertices);
-}
-
-TEST_F(Outputs, ResumingWithLessThanThereIsTellsSo) {
-  run({"--spp", "4", "--checkpoint", "state"});
-  testing::internal::CaptureStdout();
-  testing::internal::CaptureStderr();
-  run_command_line({"render", "box.xml", "--size", "8x8", "--max-depth", "3", "--integrator", "bdpt", "-o", "a.exr",
-                    "--spp", "3", "--resume", "state"});
-  testing::internal::GetCapturedStdout();
-  const std::string said = testing::internal::GetCapturedStderr();
-  EXPECT_NE(said.find("note: state holds 4 passes, more than --spp 3"), std::string::npos) << said;
-  EXPECT_NE(said.find("[########################]"), std::string::npos) << "a render that is done is whole: " << said;
-}
-
-// What it is rendered with, whatever the scene names: box.xml asks for path.
-TEST_F(Outputs, AResumedRenderKeepsItsIntegrator) {
-  const auto render = [](Words more) {
-    more.insert(more.begin(), {"render", "box.xml", "-q", "--size", "8x8", "--max-depth", "3", "-o", "a.exr"});
-    return kit::error_of([&] { run_command_line(more); });
-  };
-  const auto integrator = [] { return nlohmann::json::parse(kit::bytes_of("a.json"))["options"]["integrator"]; };
-  EXPECT_EQ(render({"--plan", "all", "--spp", "4"}), "");
-  const std::vector<float> straight = read_picture("a.exr").pixels;
-  EXPECT_EQ(render({"--plan", "all", "--spp", "2", "--checkpoint", "guided"}), "");
-  EXPECT_EQ(render({"--resume", "guided", "--spp", "4"}), "");
-  EXPECT_EQ(integrator(), "guided-bdpt");
-  EXPECT_EQ(read_picture("a.exr").pixels, straight);
-  EXPECT_EQ(render({"--plan", "auto", "--spp", "2", "--checkpoint", "planned"}), "");
-  EXPECT_EQ(integrator(), "bdpt") << "too few samples to learn";
-  EXPECT_EQ(render({"--resume", "planned", "--spp", "4"}), "");
-  EXPECT_EQ(integrator(), "bdpt");
-  const std::string other = render({"--resume", "planned", "--integrator", "path", "--spp", "4"});
-  EXPECT_EQ(other, "planned: a checkpoint of bdpt, not of path; go on with that, or start again without --resume");
-  EXPECT_NE(
-      render({"--resume", "planned", "--seed", "2"}).find("\"seed\":0, here \"seed\":2; give what it was made with"),
-      std::string::npos);
-  EXPECT_NE(render({"--resume", "planned", "--plan", "auto"}).find("leave out --plan"), std::string::npos);
-  EXPECT_EQ(render({"--resume", "none"}), "none: no such checkpoint; render once with --checkpoint");
-}
-
-TEST_F(Outputs, WhatIsRenderedWithUnaskedIsTold) {
-  const auto said = [](Words more) {
-    more.insert(more.begin(), {"render", "box.xml", "--size", "8x8", "--max-depth", "3", "--spp", "2", "-o", "a.exr"});
-    testing::internal::CaptureStdout();
-    testing::internal::CaptureStderr();
-    run_command_line(more);
-    testing::internal::GetCapturedStdout();
-    return testing::internal::GetCapturedStderr();
-  };
-  const std::string note = "note: the scene asks for path; --plan auto chooses what suits it\n";
-  EXPECT_NE(said({}).find(note), std::string::npos);
-  for (const Words& asked : {Words{"-q"}, {"--integrator", "path"}, {"--plan", "none"}, {"--plan", "auto"}})
-    EXPECT_EQ(said(asked).find("asks for"), std::string::npos) << asked.back();
-  EXPECT_NE(said({"--plan", "auto"}).find("note: bdpt is used: there is no time to learn\n"), std::string::npos);
-}
-
-TEST_F(Outputs, VersusIsCheckedBeforeAPlannedRender) {
-  for (const char* other : {"nope", "guided-bdpt"}) {
-    const std::string said = kit::error_of([&] {
-      run_command_line({"render", "box.xml", "-q", "--plan", "auto", "--versus", other, "-o", "a.exr", "--spp", "1"});
-    });
-    EXPECT_EQ(said.find("--versus " + std::string(other) + ": cannot be held against what is planned"), 0u) << said;
-  }
-  EXPECT_EQ(count(), 3u);
 }
 
 // The scene may stand anywhere among the options.
@@ -323,56 +206,6 @@ TEST_F(Outputs, NamesNeedBeNoText) {
   EXPECT_TRUE(fs::exists("caf\xe9.json"));
 }
 
-// Whatever the scene names: what is planned may guide, and merges nothing.
-TEST_F(Outputs, WhatIsPlannedIsCheckedAsWhatGuidesIs) {
-  const auto said = [](Words words) {
-    words.insert(words.begin(), {"render", "box.xml", "-q", "--plan", "auto", "--size", "8x8", "-o", "a.exr"});
-    return kit::error_of([&] { run_command_line(words); });
-  };
-  EXPECT_NE(said({"--no-next-event"}).find("--no-next-event: guided-bdpt needs it"), std::string::npos);
-  EXPECT_NE(said({"--merge-radius", "9"}).find("guided-bdpt merges nothing"), std::string::npos);
-  EXPECT_NE(said({"--final-gather", "8"}).find("guided-bdpt has no photon map"), std::string::npos);
-  EXPECT_EQ(count(), 3u);
-  testing::internal::CaptureStdout();
-  EXPECT_EQ(said({"--light-choice", "learned", "--spp", "1"}), "");  // bdpt's, for want of time
-  testing::internal::GetCapturedStdout();
-  EXPECT_NE(kit::bytes_of("a.json").find("\"light_choice\": \"learned\""), std::string::npos);
-}
-
-// A checkpoint is not gone on from by itself.
-TEST_F(Outputs, ACheckpointThatIsBegunAnewIsTold) {
-  const auto said = [](const Words& more) {
-    Words words = {"render", "box.xml", "--integrator", "path",  "--size",       "8x8",
-                   "--spp",  "1",       "-o",           "a.exr", "--checkpoint", "state"};
-    words.insert(words.end(), more.begin(), more.end());
-    testing::internal::CaptureStdout(), testing::internal::CaptureStderr();
-    run_command_line(words);
-    testing::internal::GetCapturedStdout();
-    return testing::internal::GetCapturedStderr();
-  };
-  EXPECT_EQ(said({}).find("begun anew"), std::string::npos);
-  EXPECT_NE(said({}).find("note: state is begun anew; --resume state would go on from it\n"), std::string::npos);
-  EXPECT_EQ(said({"--resume", "state"}).find("begun anew"), std::string::npos);
-}
-
-// What a list of parts makes is checked as if it had been named.
-TEST_F(Outputs, PartsOfAPlanAreCheckedAsAnIntegratorIs) {
-  const auto said = [](Words words) {
-    words.insert(words.begin(), {"render", "box.xml", "-q", "--size", "8x8", "--spp", "2", "-o", "a.exr"});
-    return kit::error_of([&] { run_command_line(words); });
-  };
-  EXPECT_NE(said({"--plan", "light-subpaths", "--no-next-event"}).find("bdpt needs it"), std::string::npos);
-  EXPECT_NE(said({"--plan", "none", "--save-fields", "f"}).find("path learns no fields"), std::string::npos);
-  EXPECT_NE(said({"--plan", "light-subpaths", "--final-gather", "4"}).find("--final-gather: bdpt"), std::string::npos);
-  EXPECT_NE(said({"--plan", "none", "--guide", "light"}).find("--guide: the parts"), std::string::npos);
-  EXPECT_NE(said({"--plan", "all,light-subpaths"}).find("all stands alone"), std::string::npos);
-  EXPECT_EQ(count(), 3u);
-  testing::internal::CaptureStdout();
-  EXPECT_EQ(said({"--plan", "light-subpaths,camera-guiding", "--save-fields", "f"}), "");
-  testing::internal::GetCapturedStdout();
-  EXPECT_TRUE(fs::exists("f"));
-}
-
 // The error of all pixels, which a single firefly may rule, stands beside that of the rest.
 TEST(Progress, TellsTheErrorWithoutTheWorstPixels) {
   RenderState state;
@@ -387,36 +220,6 @@ TEST(Progress, TellsTheErrorWithoutTheWorstPixels) {
   show(p, {.spp = 8}, state);
   const std::string said = testing::internal::GetCapturedStderr();
   EXPECT_NE(said.find("relMSE ~ 0.017 (75.8 of all)"), std::string::npos) << said;
-}
-
-// The loader, which comes before the integrators, knows their names as well.
-TEST_F(Outputs, AScenesIntegratorIsFoundByEitherSpelling) {
-  const auto load = [](const std::string& integrator) {
-    return load_scene_text(
-        "<scene version=\"3.0.0\"><integrator type=\"" + integrator +
-            "\"/><sensor type=\"perspective\"/><emitter type=\"constant\"/><shape type=\"sphere\"/></scene>",
-        ".", "text", {});
-  };
-  for (std::string name : integrator_names()) {
-    const std::string right = name;
-    std::replace(name.begin(), name.end(), '-', '_');
-    for (const std::string& spelling : {right, name}) {
-      const Scene scene = load(spelling);
-      EXPECT_EQ(scene.hints.integrator, right);
-      EXPECT_TRUE(scene.notes.empty()) << spelling << ": " << scene.notes[0];
-    }
-  }
-  const Scene other = load("metropolis");
-  EXPECT_EQ(other.notes.size(), 1u);
-  EXPECT_TRUE(plans({}, other)) << "as if none were named";
-  EXPECT_FALSE(plans({}, load("bdpt")));
-}
-
-TEST_F(Outputs, NoPlanGoesWithAnyIntegrator) {
-  run({"--plan", "none", "--integrator", "guided-bdpt"});
-  const auto options = nlohmann::json::parse(kit::bytes_of("a.json"))["options"];
-  EXPECT_EQ(options["integrator"], "guided-bdpt");
-  EXPECT_EQ(options["leaves_out"], false);
 }
 
 TEST(Versus, OfOnePassNoErrorIsTold) {

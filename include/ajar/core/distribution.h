@@ -24,9 +24,6 @@ struct Distribution {
   uint32_t sample(float& u) const;
 };
 
-/// Writes the n + 1 cumulative sums of a Distribution and returns the total of the weights.
-double cumulate(std::span<const float> weights, float* cdf);
-
 /// Piecewise constant over the unit square, rows of equal height; density with respect to the area of the square.
 /// Weights in rows, row 0 at y = 0. The same promises as above, for rows and for the cells of each row.
 struct Distribution2D {

@@ -90,17 +90,11 @@ void point(Params& p) {
 }
 
 // The picture that a spot throws is its texture times its intensity.
-bool shows_attribute(const Scene& scene, const Slot& slot) {
-  if (slot.texture == none) return false;
-  const Texture& t = scene.textures[slot.texture];
-  if (t.kind == TextureKind::bitmap || t.kind == TextureKind::mesh_attribute)
-    return t.kind == TextureKind::mesh_attribute;
-  return shows_attribute(scene, t.color0) || shows_attribute(scene, t.color1);
-}
-
 // A picture that is thrown is of no mesh.
 void refuse_attributes(Params& p, const Slot& picture) {
-  if (shows_attribute(p.loader.scene, picture))
+  Shown shown;
+  list_shown(p.loader.scene, picture, shown);
+  if (!shown.attributes.empty())
     unsupported(p.loader, p.node, "its picture shows a mesh attribute, and it has no mesh", "black in its place");
 }
 

@@ -145,6 +145,13 @@ DVec3 across(const DVec3& z, bool old);
 /// Axes equal in length and at right angles, to a relative 1e-4.
 bool is_similarity(const DMat4& m);
 
+/// What a texture needs of the mesh that it is on.
+struct Shown {
+  std::set<std::string> attributes;
+  std::set<uint32_t> limits;  ///< textures of TextureKind::limit
+};
+/// Adds what this one needs, and those inside of it.
+void list_shown(const Scene& scene, const Slot& slot, Shown& out);
 /// What stands for a colour or texture: refs followed, and of a d65 what is nested in it, as in Mitsuba's RGB modes.
 const Node& meant_by(Loader& loader, const Node& node);
 /// <rgb>, <srgb>, <spectrum>, <blackbody>, <float>: linear RGB, not negative.

@@ -224,20 +224,6 @@ constexpr ShapeReader shape_readers[] = {
     {"obj", obj}, {"rectangle", rectangle}, {"sphere", sphere}, {"serialized", serialized},
     {"ply", ply}, {"cube", cube},           {"disk", disk},     {"cylinder", cylinder}};
 
-// What the textures of a shape need of its mesh.
-struct Shown {
-  std::set<std::string> attributes;
-  std::set<uint32_t> limits;  // textures of TextureKind::limit
-};
-
-void list_shown(const Scene& scene, const Slot& slot, Shown& out) {
-  if (slot.texture == none) return;
-  const Texture& t = scene.textures[slot.texture];
-  if (t.kind == TextureKind::mesh_attribute) out.attributes.insert(t.attribute);
-  if (t.kind == TextureKind::limit) out.limits.insert(slot.texture);
-  if (t.kind != TextureKind::bitmap && t.kind != TextureKind::mesh_attribute)
-    for (const Slot* inner : {&t.color0, &t.color1}) list_shown(scene, *inner, out);
-}
 void list_shown(const Scene& scene, uint32_t material, Shown& out) {
   const Material& m = scene.materials[material];
   for (const Slot* slot : {&m.reflectance, &m.specular, &m.transmittance, &m.alpha_u, &m.alpha_v, &m.exponent,

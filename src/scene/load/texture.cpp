@@ -280,6 +280,15 @@ Slot exchanged(Params& params, const Slot& s) {
 
 }  // namespace
 
+void list_shown(const Scene& scene, const Slot& slot, Shown& out) {
+  if (slot.texture == none) return;
+  const Texture& t = scene.textures[slot.texture];
+  if (t.kind == TextureKind::mesh_attribute) out.attributes.insert(t.attribute);
+  if (t.kind == TextureKind::limit) out.limits.insert(slot.texture);
+  if (t.kind != TextureKind::bitmap && t.kind != TextureKind::mesh_attribute)
+    for (const Slot* inner : {&t.color0, &t.color1}) list_shown(scene, *inner, out);
+}
+
 Slot as_number(Params& params, const Slot& s) {
   const Scene& scene = params.loader.scene;
   if (!params.loader.document.old) return exchanged(params, s);
