@@ -51,6 +51,7 @@ bool join_escape(const Scene& scene, const Fields* fields, uint32_t light, const
   const Rgb radiance = environment(scene, light, walk.d);
   if (is_black(radiance)) return false;
   out.value = walk.beta * radiance;
+  out.arrives = radiance;
   LightPoint point = light_point(scene, light, walk.d);
   const Vertex& before = camera[camera.n - 1];
   point.p = before.p;

@@ -75,6 +75,21 @@ void record_return(const Fields& fields, Training& training, const Vertex& a, co
          {a.p, d, std::sqrt(b.distance2), brought, float(cosine * inv_pi / pdf)});
 }
 
+// Where a subpath left the scene there are infinite lights at most: Q, and no W.
+void record_escape(const Fields& fields, Training& training, const Subpath& subpath, Side side) {
+  const Escape& e = subpath.escape;
+  if (!(e.pdf > 0) || subpath.n < 2) return;
+  const Vertex& a = subpath[subpath.n - 1];
+  End from = end_of(fields, a, e.d, side);
+  if (from.cell == none || a.delta || !(from.cosine > 1e-4f)) return;
+  if (from.own <= 0) from.own = 1;
+  const float weight = weight_at(from, from.own * double(e.pdf) / from.cosine);
+  const FieldRecord records[] = {{Side::camera, from.cell, {a.p, e.d, infinity, e.radiance, weight}},
+                                 {Side::light, from.cell, {a.p, e.d, infinity, 0, weight}}};
+  const bool one = fields.rule == Rule::returned;
+  record(fields, training, std::span(records + (one && side == Side::light), one ? 1 : 2));
+}
+
 // The lamp's own cell learns where W lies, too: it guides emission.
 void record_emission(const Fields& fields, Training& training, Sightings& sightings, const Vertex& lamp,
                      const Vertex& first, const Passed& passed, float brought) {
@@ -96,7 +111,10 @@ void record_emission(const Fields& fields, Training& training, Sightings& sighti
 // What vertex i would pass on to the one before it.
 Passed passed_by(const Fields& fields, const Subpath& subpath, int i, Side side, const Passed& next) {
   if (!passes(subpath[i].guide)) return {};
-  if (i + 1 >= subpath.n) return {subpath[i].received, 0, 0};
+  if (i + 1 >= subpath.n) {
+    const Escape& e = subpath.escape;
+    return {e.share * e.radiance, 0, glm::dot(subpath[i].guide.wo, -e.d) > straight_on ? infinity : 0};
+  }
   const float here = luminance(subpath[i].beta);
   if (!(here > 0)) return {};
   const Vertex& after = subpath[i + 1];
@@ -108,12 +126,13 @@ Passed passed_by(const Fields& fields, const Subpath& subpath, int i, Side side,
 
 // What a vertex scatters back along the path, by what the path itself went on to find; next is the same of the vertex
 // after it.
-float brought_by(const Subpath& subpath, int i, float next) {
+float brought_by(const Subpath& subpath, int i, Side side, float next) {
   const Vertex& v = subpath[i];
   float sum = v.shines;
-  sum += connectable(v.guide) ? scatters(v.guide) * v.received : v.received;
+  if (connectable(v.guide)) sum += scatters(v.guide) * v.received;
   const float here = luminance(v.beta);
   if (i + 1 < subpath.n && here > 0) sum += next * luminance(subpath[i + 1].beta) / here;
+  if (i + 1 == subpath.n && side == Side::camera) sum += subpath.escape.share * subpath.escape.radiance;
   return sum;
 }
 
@@ -121,11 +140,12 @@ float brought_by(const Subpath& subpath, int i, float next) {
 
 void record_subpath(const Fields& fields, Training& training, Sightings& sightings, const Subpath& subpath, Side side) {
   Tallies& own_tallies = training.of(side);
+  record_escape(fields, training, subpath, side);
   float brought = 0;
   Passed passed;
   for (int i = subpath.n - 1; i >= 1; --i) {
     const Vertex& b = subpath[i];
-    if (fields.rule == Rule::returned) brought = brought_by(subpath, i, brought);
+    if (fields.rule == Rule::returned) brought = brought_by(subpath, i, side, brought);
     passed = passed_by(fields, subpath, i, side, passed);
     if (connectable(b.guide)) {
       if (b.guide.missing) record_missing(sightings, b.guide.missing, glm::dot(b.ng, b.guide.wo) < 0 ? -b.ng : b.ng);

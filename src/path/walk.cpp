@@ -39,7 +39,7 @@ Counters& Counters::operator+=(const Counters& o) {
 void start_camera(const Scene& scene, const WalkOptions& options, const Vec2& raster, const Vec2& lens,
                   Subpath& subpath, Walk& walk) {
   const CameraRay ray = generate(scene.camera, raster, lens);
-  subpath.n = 0;
+  subpath.n = 0, subpath.escape = {};
   Vertex& v = subpath.add();
   v.p = ray.o, v.error = 0, v.ng = Vec3(0);
   v.own = 1, v.sum = 0, v.delta = false, v.infinite = false, v.seen = false;
@@ -50,7 +50,7 @@ void start_camera(const Scene& scene, const WalkOptions& options, const Vec2& ra
 }
 
 bool start_light(const Scene& scene, const WalkOptions& options, Sampler& sampler, Subpath& subpath, Walk& walk) {
-  subpath.n = 0;
+  subpath.n = 0, subpath.escape = {};
   if (scene.lights.empty()) return false;
   walk = Walk{};
   const uint32_t choice = sampler.skip();

@@ -202,10 +202,9 @@ void join_escapes(Work& work, const Walk& walk) {
   for (const uint32_t light : work.job.scene->infinite_lights)
     if (join_escape(*work.job.scene, work.job.walk.fields, light, camera, walk, c)) {
       add(work, c, 0, camera.n + 1);
-      if (work.sample.teaches) found += luminance(c.value) * weigh(work, c);
+      if (work.sample.teaches) found += luminance(c.arrives) * weigh(work, c);
     }
-  Vertex& last = camera[camera.n - 1];
-  if (found > 0 && camera.n > 1 && !connectable(last.guide)) last.received = found / luminance(last.beta);
+  if (work.sample.teaches) camera.escape = escape_of(camera, walk, found);
   charge_join(work.scratch, 0, camera.n + 1);
 }
 

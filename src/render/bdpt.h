@@ -62,6 +62,12 @@ inline float relative_importance(const Fields& fields, const Guide& guide) {
   return float(fields.q.unit) / expected_radiance(fields, guide, 0.02f);
 }
 
+/// radiance: Escape::radiance.
+inline Escape escape_of(const Subpath& subpath, const Walk& walk, float radiance) {
+  const float arrived = luminance(subpath[subpath.n - 1].beta);
+  return {walk.d, float(walk.pdf), radiance, arrived > 0 ? luminance(walk.beta) / arrived : 0};
+}
+
 /// What a vertex received from the light, or the lens, itself: nothing where something is in the way.
 inline void teach_direct(const Work& work, Vertex& v, float received) {
   const Guide& guide = v.guide;

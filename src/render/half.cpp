@@ -19,6 +19,23 @@ void teach_start(const Work& work, const Subpath& light, const Walk& walk, bool 
   charge(work.scratch, work.scratch.ledger->learn_ticks);
 }
 
+// Luminance of the infinite lights in a direction, as far as rays that hit them bring it better than next-event
+// estimation: of camera subpaths that go on as a matt surface would send them.
+float left_to_hits(const Work& work, const Vertex& v, const Vec3& d) {
+  const Scene& scene = *work.job.scene;
+  float sum = 0;
+  for (const uint32_t light : scene.infinite_lights) {
+    const float radiance = luminance(environment(scene, light, d));
+    if (!(radiance > 0)) continue;
+    LightPoint point = light_point(scene, light, d);
+    point.p = v.p;
+    const double nee = connectable(v.guide) ? pdf_next_event(scene, v.guide, point, d) : 0;
+    const double hit = inv_pi * std::abs(glm::dot(v.ng, d));
+    sum += radiance / float(1 + raise(work.job.walk.heuristic, ratio(nee, hit)));
+  }
+  return sum;
+}
+
 }  // namespace
 
 void trace_light_subpath(Work& work) {
@@ -35,7 +52,11 @@ void trace_light_subpath(Work& work) {
     ++work.scratch.counters.light_rays;
     const bool hit = step(*job.scene, *job.accel, job.walk, light, walk, surface);
     charge(work.scratch, work.scratch.ledger->light_ticks);
-    if (!hit) break;
+    if (!hit) {
+      if (work.sample.teaches && job.guided && light.n > 1)
+        light.escape = escape_of(light, walk, left_to_hits(work, light[light.n - 1], walk.d));
+      break;
+    }
     const bool scatters_here = connectable(light[light.n - 1].guide);
     if (scatters_here && !arrived) teach_start(work, light, walk, true);
     arrived |= scatters_here;

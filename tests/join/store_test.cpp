@@ -273,6 +273,31 @@ TEST(LightStore, NothingBehindIsChosen) {
   EXPECT_GT(behind, 100);
 }
 
+// Light that arrives at the black back of an opaque surface goes nowhere, however much of it there is.
+TEST(LightStore, HoldsNoBlackBacks) {
+  for (const bool two_sided : {false, true}) {
+    Scene scene;
+    Material both;
+    both.kind = MaterialKind::twosided;
+    both.nested[0] = add_diffuse(scene, Rgb(0.5f));
+    const uint32_t material = two_sided ? add_material(scene, both) : both.nested[0];
+    add_quad(scene, {-1, 0, -1}, {2, 0, 0}, {0, 0, 2}, material);  // faces down
+    add_light(scene, LightKind::directional, Rgb(1));
+    scene.lights[0].direction = {0, -1, 0};
+    finish(scene);
+    const Accel accel(scene);
+    WalkOptions options;
+    options.light_paths = 64;
+    LightStore store;
+    Subpath light;
+    for (uint64_t i = 0; i < 64; ++i) {
+      trace_subpath(scene, accel, options, Side::light, i, 0, 3, light);
+      add(store, light, 1);
+    }
+    EXPECT_EQ(store.places.empty(), !two_sided);
+  }
+}
+
 // What a store keeps of a subpath is what the join of that subpath itself reads.
 TEST(LightStore, JoinsAsTheSubpathItself) {
   const Room room(1, true);

@@ -51,8 +51,10 @@ struct GuideSample {
 /// Resolves the material at the surface for a viewer in direction wo, and finds the cell. fields may be null.
 void make_guide(const Scene& scene, const Fields* fields, Side side, const Surface& surface, const Vec3& wo,
                 Guide& out);
-/// Whether a direction that is not a delta event can leave here.
-inline bool connectable(const Guide& guide) { return guide.bsdf.has_smooth && !guide.blocked; }
+/// Whether a direction that is not a delta event can leave here: not from the black back of what is opaque.
+inline bool connectable(const Guide& guide) {
+  return guide.bsdf.has_smooth && !guide.blocked && (!guide.bsdf.opaque || guide.wo_local.z > 0);
+}
 /// False where evaluate towards w, of any length, is sure to be black; quick.
 inline bool may_scatter(const Guide& guide, const Vec3& w) {
   return !guide.bsdf.opaque || glm::dot(guide.frame.n, w) > 0;

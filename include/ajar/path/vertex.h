@@ -25,14 +25,20 @@ struct Vertex {
   bool seen = false;        ///< by the lens, itself or by way of delta events; camera subpaths
   bool infinite = false;    ///< vertex 0: a direction rather than a place
   uint8_t next_events = 1;  ///< rays to lights from here, also where none was sent by chance; camera subpaths
-  /// Luminance of what next-event estimation (the lens) brought here, per area, for Rule::returned; of what only passes
-  /// light on: of the infinite lights that the subpath escaped to from here, times their MIS weights.
-  float received = 0;
-  float shines = 0;  ///< luminance of the light that the subpath ran into here, times its MIS weight
+  float received = 0;       ///< luminance of what next-event estimation (the lens) brought here, per area
+  float shines = 0;         ///< luminance of the light that the subpath ran into here, times its MIS weight
   uint32_t shape = none;
   uint32_t instance = none;
   Guide guide;
   LightPoint point;  ///< vertex 0 of a light subpath
+};
+
+/// How a subpath left the scene from its last vertex.
+struct Escape {
+  Vec3 d{0};
+  float pdf = 0;       ///< solid-angle density of d; 0: it did not leave the scene
+  float radiance = 0;  ///< luminance of infinite lights in this direction, times the MIS weights of hitting them
+  float share = 0;     ///< luminance of the throughput over that which arrived at the last vertex
 };
 
 /// Vertices of one subpath; n of them are in use. The storage is kept from path to path, so that tracing does not
@@ -40,6 +46,7 @@ struct Vertex {
 struct Subpath {
   std::vector<Vertex> vertices = std::vector<Vertex>(32);
   int n = 0;
+  Escape escape;
 
   Vertex& add() {
     if (n == int(vertices.size())) vertices.resize(2 * vertices.size());
