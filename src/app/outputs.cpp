@@ -229,7 +229,7 @@ void write_image(const RenderArguments& a, const Scene& scene, const Accel& acce
 }
 
 void Saver::save(const RenderState& state) {
-  if (path.empty() || state.stats.seconds - saved <= 60) return;
+  if (path.empty() || state.stats.seconds - saved <= save_seconds) return;
   saved = state.stats.seconds;
   try {
     save_checkpoint(path, key, state);

@@ -74,11 +74,32 @@ void note_checkpoint(const RenderArguments& a) {
 
 bool has_samples(const Film& film) { return film.passes > 0 || film.chunks > 0; }
 
-std::string interruption(const RenderArguments& a, const Film& film) {
+// Files of an earlier render that one which was stopped early does not replace: they are worth more.
+struct Spared {
+  bool image = false, checkpoint = false;
+};
+
+// Of a render that does not go on from them: the image where no pass is whole, the checkpoint before the first save on
+// the way.
+Spared spare(const RenderArguments& a, const Run& run, const RenderState& state) {
+  if (!run.interrupted || !a.resume.empty()) return {};
+  std::error_code unknown;
+  return {
+      state.film.passes == 0 && std::filesystem::exists(a.out, unknown),
+      state.stats.seconds <= save_seconds && !a.checkpoint.empty() && std::filesystem::exists(a.checkpoint, unknown)};
+}
+
+std::string left_alone(const RenderArguments& a, const Spared& spared) {
+  if (spared.image && spared.checkpoint) return fmt::format("; {} and {} are left as they were", a.out, a.checkpoint);
+  if (!spared.image && !spared.checkpoint) return {};
+  return fmt::format("; {} is left as it was", spared.image ? a.out : a.checkpoint);
+}
+
+std::string interruption(const RenderArguments& a, const Spared& spared, const Film& film) {
   if (!has_samples(film))
     return fmt::format("interrupted before the first sample that is in the image; {} not written",
                        a.checkpoint.empty() ? a.out + " is" : fmt::format("{} and {} are", a.out, a.checkpoint));
-  const std::string rest = fmt::format("; {} has what was done", a.out);
+  const std::string rest = (spared.image ? "" : fmt::format("; {} has what was done", a.out)) + left_alone(a, spared);
   if (film.passes > 0) return fmt::format("interrupted after {:.1f} spp{}", spp_of(film), rest);
   const double share = 1 - double(film.chunks) / chunk_count(film);
   return fmt::format("interrupted in the first pass: {:.0f} % of the image has no sample{}", 100 * share, rest);
@@ -163,10 +184,10 @@ void trace(const RenderArguments& a, const Scene& scene, const Accel& accel, Run
 }
 
 void write_all(const RenderArguments& a, const Scene& scene, const Accel& accel, Run& run, RenderState& state,
-               const Log& log) {
+               const Spared& spared, const Log& log) {
   std::vector<std::function<void()>> writes;
   const bool begun = has_samples(state.film) || !run.interrupted;  // else what is there is worth more
-  if (!a.checkpoint.empty() && begun)
+  if (!a.checkpoint.empty() && begun && !spared.checkpoint)
     writes.emplace_back([&] { save_checkpoint(a.checkpoint, checkpoint_key(run, state.film), state); });
   if (!a.save_fields.empty() && is_guided(run.options.integrator) && begun)
     writes.emplace_back([&] {
@@ -174,9 +195,10 @@ void write_all(const RenderArguments& a, const Scene& scene, const Accel& accel,
     });
   writes.emplace_back([&] {  // last of what goes on from the state
     if (run.interrupted) show_merged(state);
-    if (has_samples(state.film)) write_image(a, scene, accel, run, state);
+    if (has_samples(state.film) && !spared.image) write_image(a, scene, accel, run, state);
   });
-  if (run.options.techniques) writes.emplace_back([&] { write_pyramid(state.pyramid, state.film, a.techniques); });
+  if (run.options.techniques && begun && !spared.image)
+    writes.emplace_back([&] { write_pyramid(state.pyramid, state.film, a.techniques); });
   writes.emplace_back([&] {
     if (!log.fault.empty()) throw Error(log.fault);
   });
@@ -223,10 +245,11 @@ void run_render(RenderArguments a) {
   RenderState state = begin(a, scene, run);
   Log log = open_log(a, std::move(reference));
   trace(a, scene, accel, run, state, log);
-  write_all(a, scene, accel, run, state, log);
+  const Spared spared = spare(a, run, state);
+  write_all(a, scene, accel, run, state, spared, log);
   note_plain(a, run, state);
   warn(run, state);
-  if (run.interrupted) throw Interrupted{interruption(a, state.film)};
+  if (run.interrupted) throw Interrupted{interruption(a, spared, state.film)};
   if (!a.versus.empty()) hold_against(a, scene, accel, run, state);
 }
 

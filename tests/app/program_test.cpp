@@ -58,6 +58,30 @@ TEST_F(Program, InterruptedRendersSaySoAndKeepWhatIsDone) {
   }
 }
 
+// A checkpoint in the first minute, an image in the first pass: what an earlier render left is worth more.
+TEST_F(Program, WhatIsStoppedEarlyReplacesNoEarlierWork) {
+  const std::string render = "\"$ajar\" render box.xml --integrator bdpt -o a.exr --checkpoint ck --techniques layers ";
+  ASSERT_EQ(run(render + "--spp 4" + small), 0) << said();
+  const auto layers = [&] { return std::distance(fs::directory_iterator(folder / "layers"), {}); };
+  const std::string image = kit::bytes_of(folder / "a.exr"), state = kit::bytes_of(folder / "ck");
+  const auto count = layers();
+  ASSERT_GT(count, 0);
+  const std::string large = render + "--spp 1000000000 --size 512x512 --max-depth 3";
+  EXPECT_EQ(run(stopped(large, "said", "INT")), 130) << said();
+  EXPECT_NE(said().find("ajar: interrupted in the first pass"), std::string::npos) << said();
+  EXPECT_NE(said().find("; a.exr and ck are left as they were\n"), std::string::npos) << said();
+  EXPECT_TRUE(kit::bytes_of(folder / "a.exr") == image);
+  EXPECT_TRUE(kit::bytes_of(folder / "ck") == state);
+  EXPECT_EQ(layers(), count);
+  EXPECT_EQ(run(stopped(render + "--spp 1000000000 --log log" + small, "log", "INT")), 130) << said();
+  EXPECT_NE(said().find("; a.exr has what was done; ck is left as it was\n"), std::string::npos) << said();
+  EXPECT_FALSE(kit::bytes_of(folder / "a.exr") == image);
+  EXPECT_TRUE(kit::bytes_of(folder / "ck") == state);
+  fs::remove(folder / "log");
+  EXPECT_EQ(run(stopped(render + "--resume ck --spp 1000000000 --log log" + small, "log", "INT")), 130) << said();
+  EXPECT_FALSE(kit::bytes_of(folder / "ck") == state) << "which it goes on from";
+}
+
 TEST_F(Program, NohupHoldsOffTheEndOfTheTerminal) {
   const std::string render = "\"$ajar\" render box.xml --integrator path --time 1s --log log -o a.exr" + small;
   EXPECT_EQ(run("trap '' HUP; " + stopped(render, "log", "HUP")), 0) << said();
