@@ -132,6 +132,14 @@ void note_plain(const RenderArguments& a, const Run& run, const RenderState& sta
       run.options.integrator, p.passes, p.ratio);
 }
 
+// No target for the noise ends such a render; see ajar/render/render.h.
+void note_black(const RenderArguments& a, const Run& run, const RenderState& state) {
+  if (a.quiet || run.interrupted || !ends_by_noise(run.options) || !is_black(state.film)) return;
+  say(stderr,
+      "ajar: note: the image is black after {} passes, and no more are tried for --noise; look at lights and camera\n",
+      state.film.passes);
+}
+
 // A state to go on from: new, or what a checkpoint or a file of fields brings.
 RenderState begin(const RenderArguments& a, Scene& scene, const Run& run) {
   RenderState state = start_render(scene, run.options);
@@ -247,7 +255,7 @@ void run_render(RenderArguments a) {
   trace(a, scene, accel, run, state, log);
   const Spared spared = spare(a, run, state);
   write_all(a, scene, accel, run, state, spared, log);
-  note_plain(a, run, state);
+  note_plain(a, run, state), note_black(a, run, state);
   warn(run, state);
   if (run.interrupted) throw Interrupted{interruption(a, spared, state.film)};
   if (!a.versus.empty()) hold_against(a, scene, accel, run, state);

@@ -15,6 +15,10 @@ glm::dvec3 variance_of_mean(const Film& film, size_t i, const glm::dvec3& mean) 
   return glm::max((film.square_sum[i] / n - mean * mean) / (n - 1), glm::dvec3(0));
 }
 
+bool is_all_zero(const std::vector<glm::dvec3>& values) {
+  return std::all_of(values.begin(), values.end(), [](const glm::dvec3& v) { return v == glm::dvec3(0); });
+}
+
 std::vector<glm::dvec3> means(const Film& film) {
   std::vector<glm::dvec3> mean = film.camera_sum;
   for (size_t i = 0; i < mean.size(); ++i)
@@ -56,7 +60,7 @@ double pixel_error(const Film& film, const std::vector<glm::dvec3>& mean, double
 }
 
 ErrorEstimate estimate(const Film& film, const std::vector<glm::dvec3>& mean, double epsilon) {
-  if (std::all_of(mean.begin(), mean.end(), [](const glm::dvec3& m) { return m == glm::dvec3(0); })) return {};
+  if (is_all_zero(mean)) return {};
   struct Pixel {
     double error, light;
   };
@@ -99,6 +103,8 @@ Picture variance(const Film& film) {
   }
   return out;
 }
+
+bool is_black(const Film& film) { return is_all_zero(film.camera_sum) && is_all_zero(film.splat_sum); }
 
 ErrorEstimate estimate_error(const Film& film) {
   return film.passes < 2 ? ErrorEstimate{} : estimate(film, means(film), 0.01);

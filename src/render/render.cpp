@@ -32,12 +32,19 @@ bool is_quiet(const RenderOptions& options, const Film& film) {
   return options.noise > 0 && film.chunks == 0 && is_checked(film.passes) && estimated_error(film) <= options.noise;
 }
 
+// Black has no relative error, so that no target for it is ever reached.
+bool stays_black(const RenderOptions& options, const Scene& scene, const Film& film) {
+  const uint32_t passes = scene.lights.empty() ? 8 : 1024;
+  return ends_by_noise(options) && film.chunks == 0 && film.passes >= passes && is_black(film);
+}
+
 bool is_finished(const RenderOptions& options, const Job& job, const RenderState& state) {
   const Film& film = state.film;
   if (in_training(state.learning) || film.passes == 0) return false;  // no image yet
   if (const uint32_t most = most_passes(options); most > 0 && film.passes >= most) return true;
   // No pass of a few pixels is left over.
-  return is_quiet(options, film) || (share_of(job, film) == 1 && is_over(options, state.stats, 1));
+  return is_quiet(options, film) || stays_black(options, *job.scene, film) ||
+         (share_of(job, film) == 1 && is_over(options, state.stats, 1));
 }
 
 // What fields know of the scene before anything is traced.

@@ -161,6 +161,24 @@ TEST_F(Render, WhatCannotBeHeldAgainstIsAnError) {
   }
 }
 
+// Black has no relative error: the only limit would never be reached.
+TEST_F(Render, NoiseAloneEndsWhereAllIsBlack) {
+  const auto passes = [&](const std::string& light, const std::string& integrator) {
+    const std::string scene = (folder / "scene.xml").string();
+    std::ofstream(scene) << "<scene version='3.0.0'><shape type='rectangle'/>" << light << "</scene>";
+    testing::internal::CaptureStdout(), testing::internal::CaptureStderr();
+    run_command_line({"render", scene, "--noise", "0.01", "--size", "4x4", "--integrator", integrator, "-o", out});
+    testing::internal::GetCapturedStdout();
+    EXPECT_NE(testing::internal::GetCapturedStderr().find("note: the image is black after"), std::string::npos);
+    return nlohmann::json::parse(std::ifstream(folder / "image.json"))["spp"].get<double>();
+  };
+  EXPECT_EQ(passes("", "path"), 8);
+  const std::string aside =
+      "<emitter type='spot'><transform name='to_world'><lookat origin='0, 0, 9' target='0, 0, 10' up='0, 1, 0'/>"
+      "</transform></emitter>";
+  for (const char* integrator : {"path", "bdpt"}) EXPECT_EQ(passes(aside, integrator), 1024) << integrator;
+}
+
 TEST_F(Render, NoiseOutOfReachEndsAtTheLimit) {
   const auto counted = run({"--noise", "1e-12", "--spp", "3"});
   EXPECT_EQ(counted["spp"], 3);

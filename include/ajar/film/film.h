@@ -92,6 +92,8 @@ struct ErrorEstimate {
   double relmse = infinity, relmse_trimmed = infinity;  ///< of all pixels; without the worst 0.1 % of them
   double trimmed_light = 1;                             ///< share of the image's luminance that those worst ones hold
 };
+/// Whether nothing but black was seen.
+bool is_black(const Film& film);
 /// From the difference of the two halves, which are independent whatever the sampler; docs/notation.md, E1 to E3. A
 /// pass at work counts by the share of it that is done.
 ErrorEstimate estimate_error(const Film& film);

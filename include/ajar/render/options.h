@@ -40,6 +40,9 @@ inline bool is_limited(const RenderOptions& o) { return o.spp > 0 || has_time_li
 /// Passes after which a render ends, whatever else may end it before; 0: as many as the other limits allow.
 inline uint32_t most_passes(const RenderOptions& o) { return is_limited(o) ? o.spp : default_spp; }
 
+/// Whether a target for the noise alone ends it.
+inline bool ends_by_noise(const RenderOptions& o) { return o.noise > 0 && o.spp == 0 && !has_time_limit(o); }
+
 /// Path depth at which tracing stops even when it is unlimited: no scene needs it, and it bounds memory.
 inline constexpr int deepest = 4096;
 
