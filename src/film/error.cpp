@@ -1,6 +1,7 @@
 // How much a film errs, as its passes tell: from their spread, and from what two halves of them differ by.
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "ajar/film/film.h"
@@ -96,10 +97,11 @@ Picture variance(const Film& film) {
   Picture out{
       film.width, film.height, {"Variance.R", "Variance.G", "Variance.B"}, std::vector<float>(3 * film.pixels())};
   if (film.passes < 2) return out;
+  constexpr double most = std::numeric_limits<float>::max();
   const std::vector<glm::dvec3> mean = means(film);
   for (size_t i = 0; i < film.pixels(); ++i) {
     const glm::dvec3 v = variance_of_mean(film, i, mean[i]);
-    for (int c = 0; c < 3; ++c) out.pixels[3 * i + c] = float(v[c]);
+    for (int c = 0; c < 3; ++c) out.pixels[3 * i + c] = float(std::min(v[c], most));
   }
   return out;
 }

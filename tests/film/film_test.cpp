@@ -114,5 +114,11 @@ TEST(Variance, IsTheSpreadOfPassesOverTheirNumber) {
   EXPECT_NEAR(variance(film).pixels[0], (4. + 1 + 9) / 2 / 3, 1e-6);
 }
 
+TEST(Variance, IsFinite) {
+  Film film = film_of(1, 1);
+  for (const float v : {0.f, 1e20f}) pass(film, grey({v}));
+  EXPECT_EQ(variance(film).pixels[0], std::numeric_limits<float>::max());
+}
+
 }  // namespace
 }  // namespace ajar
