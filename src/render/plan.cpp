@@ -24,7 +24,8 @@ constexpr double least_pixels = 2500;  // below, a pilot says little
 constexpr uint32_t pilot_passes = 17;  // the last look is before the last of them
 constexpr uint32_t pilot_lessons = 8;  // about, in time of passes
 
-double pixels_of(const Camera& camera) { return double(camera.width) * camera.height; }
+// Of the crop window, which alone is rendered.
+double pixels_of(const Camera& camera) { return double(camera.crop_width) * camera.crop_height; }
 
 // CPU seconds; infinite where a target for the noise alone ends the render.
 double budget_of(const RenderOptions& o, double pixels) {
@@ -56,13 +57,23 @@ void set_learned_parts(Plan& plan, bool light, bool guided, const std::string& w
   for (size_t i = 0; i < std::size(parts); ++i) plan.parts[i] = {parts[i].first, parts[i].second, why};
 }
 
+// Scales the film and its crop window, so that the camera sees the same.
+void scale_size(Camera& camera, double scale) {
+  const auto scaled = [&](int pixels) { return std::max(1, int(pixels * scale)); };
+  const Camera full = camera;
+  set_size(camera, scaled(full.width), scaled(full.height));
+  camera.crop_x = std::min(int(full.crop_x * scale), camera.width - 1);
+  camera.crop_y = std::min(int(full.crop_y * scale), camera.height - 1);
+  camera.crop_width = std::min(scaled(full.crop_width), camera.width - camera.crop_x);
+  camera.crop_height = std::min(scaled(full.crop_height), camera.height - camera.crop_y);
+}
+
 // Scales the camera to so many pixels as the pilot of such a budget can afford.
 void set_pilot_size(Camera& camera, double budget) {
   const double price = (pilot_passes + pilot_lessons) * sample_of_guided * 1e-6;
   const double full = pixels_of(camera);
   const double wanted = std::min(std::max(pilot_share * budget / price, least_pixels), full);
-  const double scale = std::sqrt(wanted / full);
-  set_size(camera, std::max(1, int(camera.width * scale)), std::max(1, int(camera.height * scale)));
+  scale_size(camera, std::sqrt(wanted / full));
 }
 
 std::string describe(const Pilot& p) {
@@ -105,7 +116,7 @@ void run_pilot(Scene& scene, const Accel& accel, const RenderOptions& options, c
   Pilot p;
   p.budget = budget_of(options, pixels_of(camera));
   set_pilot_size(scene.camera, p.budget < infinity ? p.budget : first_guess);
-  p.width = scene.camera.width, p.height = scene.camera.height;
+  p.width = scene.camera.crop_width, p.height = scene.camera.crop_height;
   RenderOptions small = options;
   small.integrator = plan.integrator, small.spp = pilot_passes, small.leaves_out = true;
   small.seconds = small.cpu_seconds = small.noise = 0;

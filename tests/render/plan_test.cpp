@@ -21,9 +21,10 @@ RenderOptions budget(double cpu_seconds, uint64_t seed = 1, int threads = 2) {
 Plan piloted(Scene scene, const RenderOptions& options, const Monitor& monitor = {}) {
   const Accel accel(scene);
   Plan plan = make_plan(scene, options);
-  const int width = scene.camera.width;
+  const int width = scene.camera.width, crop = scene.camera.crop_width;
   run_pilot(scene, accel, options, monitor, plan);
   EXPECT_EQ(scene.camera.width, width);
+  EXPECT_EQ(scene.camera.crop_width, crop);
   return plan;
 }
 
@@ -124,6 +125,26 @@ TEST(Plan, TheBudgetDecidesWhetherThereIsTimeToLearn) {
   RenderOptions noise;
   noise.spp = 0, noise.noise = 0.01;
   EXPECT_EQ(make_plan(scene, noise).integrator, "guided-bdpt");
+}
+
+// A crop window is all that is rendered, and all that the pilot looks at.
+TEST(Plan, IsOfTheCropWindow) {
+  Scene scene = cornell(512);
+  const double least = least_budget(scene.camera);
+  Camera& c = scene.camera;
+  c.crop_x = 320, c.crop_y = 256, c.crop_width = c.crop_height = 128;
+  EXPECT_NEAR(least_budget(c) / least, 1. / 16, 1e-9);
+  EXPECT_EQ(make_plan(scene, budget(least / 15)).integrator, "guided-bdpt");
+  const Plan plan = piloted(scene, budget(10));
+  ASSERT_TRUE(plan.pilot);
+  EXPECT_LT(plan.pilot->width, 100);
+  EXPECT_EQ(plan.pilot->width, plan.pilot->height);
+  EXPECT_GT(plan.pilot->passes, 0u);
+  set_camera(scene, {0, 0, 3}, {0, 0, -1}, 150, 512, 512);  // the room is the middle of the image
+  c.crop_x = c.crop_y = 0, c.crop_width = c.crop_height = 64;
+  const Plan beside = piloted(scene, budget(10));
+  ASSERT_TRUE(beside.pilot);
+  EXPECT_EQ(beside.pilot->passes, 0u) << "it looked at the room";
 }
 
 // Where nothing came from no comparison can be made: that is said, not made up.
