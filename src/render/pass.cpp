@@ -146,7 +146,7 @@ Merging merging_of(const Job& job, float radius, const Film& film) {
   m.inner = merge_inner;
   const CameraRay ray = generate(camera, Vec2(camera.width, camera.height) * 0.5f, Vec2(0.5f));
   m.eye = ray.o;
-  const float pixel = 1 / std::sqrt(raster_factor(camera, ray.o, ray.o + ray.d));
+  const float pixel = 1 / std::sqrt(raster_factor(camera, Vec3(0), ray.d));
   m.most = most_of_scene * job.scene->radius;
   if (camera.kind == CameraKind::orthographic)
     m.least = m.most = std::min(pixels * pixel, m.most);

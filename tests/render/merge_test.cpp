@@ -41,6 +41,24 @@ TEST(Merging, OffIsGuidedBdpt) {
   EXPECT_EQ(off.pixels, bdpt.pixels);
 }
 
+// A room 2^24 times as large is the same image: where a step of 1 from the eye is lost, too.
+TEST(Merging, RadiusIsOfPixelsInRoomsOfAnySize) {
+  const Scene room = cornell(24);
+  Scene huge = room;
+  constexpr float factor = 0x1p24f;
+  for (Mesh& mesh : huge.meshes)
+    for (Vec3& p : mesh.positions) p *= factor;
+  Camera& c = huge.camera;
+  c.to_world[3] = Vec4(Vec3(c.to_world[3]) * factor, 1);
+  c.to_camera = Mat4(glm::inverse(glm::dmat4(c.to_world)));
+  finish(huge);
+  const RenderOptions o = with_radius("photon", 0.2f, 4);  // less than its bound by the size of the scene
+  const Picture a = render_once(room, o), b = render_once(huge, o);
+  double apart = 0;
+  for (size_t i = 0; i < a.pixels.size(); ++i) apart += std::abs(double(a.pixels[i]) - double(b.pixels[i]));
+  EXPECT_LT(apart / double(a.pixels.size()), 0.01 * mean(a));
+}
+
 // Radiance 1 / (1 - a) everywhere. Every wall meets others, so that discs hang over edges in many pixels.
 TEST(Merging, KeepsTheEnergyOfAFurnace) {
   Material wall;
