@@ -33,6 +33,19 @@ double formula(const Filter& f, double x) {
   }
 }
 
+float usual_parameter(FilterKind kind) {
+  switch (kind) {
+    case FilterKind::gaussian:
+      return 0.5f;
+    case FilterKind::mitchell:
+      return 1.0f / 3;
+    case FilterKind::lanczos:
+      return 3;
+    default:
+      return 0;
+  }
+}
+
 float usual_radius(FilterKind kind, float a) {
   switch (kind) {
     case FilterKind::box:
@@ -101,11 +114,12 @@ float sample_tent(float u) { return u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::s
 
 }  // namespace
 
-Filter make_filter(FilterKind kind, float radius, float a, float b) {
-  if (kind == FilterKind::gaussian && a == 0) a = 0.5f;
-  if (kind == FilterKind::lanczos && a == 0) a = 3;
-  if (kind == FilterKind::mitchell && a == 0 && b == 0) a = b = 1.0f / 3;
-  Filter f{kind, radius > 0 ? radius : usual_radius(kind, a), a, b, {}, {}, 1};
+Filter make_filter(FilterKind kind, float radius, std::optional<float> a, std::optional<float> b) {
+  Filter f;
+  f.kind = kind;
+  f.a = a.value_or(usual_parameter(kind));
+  f.b = b.value_or(kind == FilterKind::mitchell ? usual_parameter(kind) : 0);
+  f.radius = radius > 0 ? radius : usual_radius(kind, f.a);
   if (kind != FilterKind::box && kind != FilterKind::tent) fill_tables(f);
   return f;
 }

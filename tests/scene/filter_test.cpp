@@ -52,6 +52,9 @@ TEST(Filter, HasTheUsualShape) {
   EXPECT_EQ(mitchell.radius, 2);
   EXPECT_NEAR(eval(mitchell, 0), 8.0 / 9, 1e-4);
   EXPECT_NEAR(eval(mitchell, 1), 1.0 / 18, 1e-4);
+  const Filter hermite = make_filter(FilterKind::mitchell, 0, 0, 0);
+  EXPECT_NEAR(eval(hermite, 0), 1, 1e-4);
+  EXPECT_NEAR(eval(hermite, 1), 0, 1e-4);
   const Filter catmullrom = make_filter(FilterKind::catmullrom);
   EXPECT_NEAR(eval(catmullrom, 0), 1, 1e-4);
   EXPECT_NEAR(eval(catmullrom, 1), 0, 1e-4);

@@ -2,6 +2,7 @@
 // Leaves: its separable kernel, normalised to integral 1, to evaluate and to sample.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "ajar/core/vec.h"
@@ -23,8 +24,8 @@ struct Filter {
 };
 
 /// Builds a filter; radius 0 takes the kind's usual one (box 0.5, tent 1, gaussian 4 stddev = 2, the others 2; lanczos
-/// its lobes); a = b = 0 the usual parameters (gaussian stddev 0.5; mitchell B = C = 1/3; lanczos 3 lobes).
-Filter make_filter(FilterKind kind, float radius = 0, float a = 0, float b = 0);
+/// its lobes); without a or b the usual parameters (gaussian stddev 0.5; mitchell B = C = 1/3; lanczos 3 lobes).
+Filter make_filter(FilterKind kind, float radius = 0, std::optional<float> a = {}, std::optional<float> b = {});
 /// Kernel at a signed distance in pixels, normalised so that its integral is 1.
 float eval(const Filter& filter, float x);
 /// Draws an offset from the pixel's centre for u in [0,1)^2; weight is +-sign_norm^2, 1 for positive filters.

@@ -212,6 +212,10 @@ TEST(Films, Filters) {
   EXPECT_EQ(filter("lanczos", "<integer name='lobes' value='2'/>").kind, FilterKind::lanczos);
   EXPECT_EQ(filter("gaussian", "<float name='stddev' value='0.25'/>").a, 0.25f);
   EXPECT_EQ(filter("tent", "<float name='radius' value='1.5'/>").radius, 1.5f);
+  const Filter zeros = filter("mitchell", "<float name='B' value='0'/><float name='C' value='0'/>");
+  EXPECT_EQ(zeros.a, 0);
+  EXPECT_EQ(zeros.b, 0);
+  EXPECT_EQ(filter("mitchell").a, 1.0f / 3);
   EXPECT_SAYS(error(film(10, 10, "<rfilter type='sharp'/>")), "unknown filter; supported: box, tent");
   EXPECT_SAYS(error(film(10, 10, "<rfilter type='gaussian'><float name='stddev' value='100'/></rfilter>")),
               "stddev should be");
