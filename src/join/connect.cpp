@@ -146,7 +146,7 @@ bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int
   // Nearer than the near plane nothing is in the way, as for camera rays. Those of an orthographic one begin there.
   const Camera& camera = scene.camera;
   if (camera.near_clip > 0 && camera.kind != CameraKind::orthographic)
-    out.segment.t_max = 1 - camera.near_clip / (camera.to_camera * Vec4(a.p, 1)).z;
+    out.segment.t_max = 1 - camera.near_clip / in_camera(camera, a.p).z;
   return true;
 }
 

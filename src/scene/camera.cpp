@@ -59,8 +59,11 @@ CameraRay generate(const Camera& c, const Vec2& raster, const Vec2& lens) {
   return make_ray(c, o, Vec3(at - Vec2(o) / c.focus, 1));
 }
 
+// From the eye: far from the origin the sums of a map from world coordinates would cancel.
+Vec3 in_camera(const Camera& c, const Vec3& x) { return map_vector(c.to_camera, x - Vec3(c.to_world[3])); }
+
 bool connect(const Camera& c, const Vec3& x, const Vec2& lens, float margin, CameraConnection& out) {
-  const Vec3 local = map_point(c.to_camera, x);
+  const Vec3 local = in_camera(c, x);
   const bool parallel = c.kind == CameraKind::orthographic;
   if (!((parallel || local.z > 0) && local.z >= c.near_clip && local.z <= c.far_clip)) return false;
   const Vec3 o = parallel ? Vec3(Vec2(local), c.near_clip) : lens_point(c, lens);

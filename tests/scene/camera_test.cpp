@@ -93,6 +93,31 @@ TEST(Camera, ConnectionsInvertRays) {
     }
 }
 
+// The same, worked out in double.
+glm::dvec2 raster_in_double(const Camera& c, const Vec3& x) {
+  const glm::dvec4 local = glm::inverse(glm::dmat4(c.to_world)) * glm::dvec4(x, 1);
+  const glm::dvec2 on_plane = glm::dvec2(local) / local.z / glm::dvec2(c.plane);
+  return (0.5 - 0.5 * on_plane) * glm::dvec2(c.width, c.height);
+}
+
+// What is subtracted first does not cancel afterwards.
+TEST(Camera, ConnectionsAreExactFarFromTheOrigin) {
+  for (const float far : {0.0f, 1e4f, 1e5f}) {
+    Camera c;
+    c.width = c.crop_width = 640, c.height = c.crop_height = 360;
+    set_perspective(c, 70, pose(Vec3(far, -0.7f * far, 0.3f * far), {0.3f, -0.4f, 1}));
+    for (uint32_t i = 0; i < 1000; ++i) {
+      const CameraRay ray = generate(c, in_crop(c, random2(i, 1)), {0, 0});
+      const Vec3 x = ray.o + (1 + 9 * random2(i, 2).x) * ray.d;
+      CameraConnection k;
+      ASSERT_TRUE(connect(c, x, {0, 0}, 2, k)) << far;
+      const glm::dvec2 expected = raster_in_double(c, x);
+      ASSERT_NEAR(k.raster.x, expected.x, 1e-3) << far;
+      ASSERT_NEAR(k.raster.y, expected.y, 1e-3) << far;
+    }
+  }
+}
+
 // Rays through uniform raster positions hit a tilted plane with area density factor |cos| per pixel: the mean over hits
 // of 1 / (factor |cos|) inside a patch of the plane is the patch's area per raster area. Both sides are computed.
 TEST(Camera, FactorIsTheDensityOfHits) {

@@ -53,6 +53,8 @@ struct CameraConnection {
 
 /// Ray through a raster position; lens in [0,1)^2 is used by thinlens alone.
 CameraRay generate(const Camera& camera, const Vec2& raster, const Vec2& lens);
+/// A point in camera space.
+Vec3 in_camera(const Camera& camera, const Vec3& x);
 /// Connects a point to the camera; false where it is behind the camera, outside the clip planes or farther than margin
 /// pixels outside the crop window.
 bool connect(const Camera& camera, const Vec3& x, const Vec2& lens, float margin, CameraConnection& out);
