@@ -118,6 +118,17 @@ TEST(Camera, ConnectionsAreExactFarFromTheOrigin) {
   }
 }
 
+// The factor falls with the square of the distance, in rooms of any size.
+TEST(Camera, FactorIsFiniteForAnySize) {
+  Camera c;
+  c.width = c.crop_width = 640, c.height = c.crop_height = 360;
+  set_perspective(c, 70, pose({0, 0, 0}, {0.3f, -0.4f, 1}));
+  const CameraRay ray = generate(c, {200, 100}, {0, 0});
+  const double at_one = raster_factor(c, Vec3(0), ray.d);
+  for (const double t : {1e-15, 1e-6, 1e6, 1e13, 1e15})
+    EXPECT_NEAR(raster_factor(c, Vec3(0), ray.d * float(t)) / at_one * t * t, 1, 1e-5) << t;
+}
+
 // Rays through uniform raster positions hit a tilted plane with area density factor |cos| per pixel: the mean over hits
 // of 1 / (factor |cos|) inside a patch of the plane is the patch's area per raster area. Both sides are computed.
 TEST(Camera, FactorIsTheDensityOfHits) {
