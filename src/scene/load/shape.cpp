@@ -79,15 +79,17 @@ void sphere(Params& p, Shape& shape, const MeshPart&) {
   local[3] = DMat4::col_type(center, 1);
   const DMat4 m = placed * local;
   check_invertible(p.loader, p.node, m);
+  const bool mirrored = !p.loader.document.old && determinant(m) < 0;
   if (!is_similarity(m)) {
     note(p.loader, p.node,
          fmt::format("to_world makes an ellipsoid of it: rendered as a mesh of {} x {} cells", sphere_rings,
                      sphere_segments));
     simple_mesh(p, shape, make_sphere(sphere_rings, sphere_segments), m);
+    if (mirrored) turn(p.loader.scene.meshes[shape.mesh]);
     return;
   }
   shape.kind = ShapeKind::sphere;
-  shape.flip = boolean(p, "flip_normals", false) != (!p.loader.document.old && determinant(m) < 0);
+  shape.flip = boolean(p, "flip_normals", false) != mirrored;
   place_quadric(p, shape, m);
 }
 

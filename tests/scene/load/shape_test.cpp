@@ -36,6 +36,28 @@ TEST(Shapes, Sphere) {
   EXPECT_SAYS(error_of(shape("sphere", "<float name='radius' value='0'/>")), "should be greater than 0");
 }
 
+// An ellipsoid, which is a mesh, has the sides of a sphere under the same transform.
+TEST(Shapes, MirroredEllipsoidsAreTurnedAsSpheresAre) {
+  const auto faces_out = [](const std::string& inside, const char* version) {
+    const Scene s = load_inside(
+        shape("sphere", "<transform name='toWorld'><scale x='-1' z='1.001'/></transform>" + inside), {}, version);
+    const Mesh& mesh = s.meshes.at(0);
+    const glm::uvec3& t = mesh.triangles[mesh.triangles.size() / 2];
+    const bool out = glm::dot(normal(mesh, mesh.triangles.size() / 2), mesh.positions[t.x]) > 0;
+    if (!mesh.normals.empty()) {
+      EXPECT_EQ(glm::dot(mesh.normals[t.x], mesh.positions[t.x]) > 0, out);
+    }
+    return out;
+  };
+  const std::string flat = "<boolean name='faceNormals' value='true'/>";
+  for (const std::string& more : {std::string(), flat}) {
+    EXPECT_TRUE(faces_out(more, "0.6.0"));
+    EXPECT_FALSE(faces_out(more, "3.0.0"));
+    EXPECT_FALSE(faces_out(more + flip, "0.6.0"));
+    EXPECT_TRUE(faces_out(more + flip, "3.0.0"));
+  }
+}
+
 // Mitsuba 0.x scales the radius alone, and keeps the outside of a mirrored sphere.
 TEST(Shapes, SpheresOfOldScenes) {
   const std::string moved = shape("sphere",
