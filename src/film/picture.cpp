@@ -18,6 +18,9 @@ namespace ajar {
 namespace {
 
 constexpr float half_max = 65504;
+// The least that a half holds to its 11 bits is 2^-14: where a channel's largest value is below this, what is a
+// thousandth of it would have fewer.
+constexpr float half_dim = 0x1p-4f;
 constexpr int64_t most_values = int64_t(1) << 30;  // 4 GiB of floats: more is a damaged header, not a picture
 
 std::string one_line(std::string text) {
@@ -52,14 +55,20 @@ void encode_and_write(const std::string& path, const char* format, const OIIO::I
   write_aside(path, bytes.buffer().data(), bytes.buffer().size());
 }
 
-/// Per channel: half unless a finite value would overflow.
+/// Of variances and positions, whose range no half has.
+bool is_wide(const std::string& name) { return name.starts_with("Variance.") || name.starts_with("P."); }
+
+/// Per channel: half unless a finite value would overflow, or most would be too small for all its bits.
 std::vector<OIIO::TypeDesc> channel_formats(const Picture& picture, bool half) {
   const size_t channels = picture.names.size();
-  std::vector<OIIO::TypeDesc> formats(channels, half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
-  if (half)
-    for (size_t i = 0; i < picture.pixels.size(); ++i)
-      if (std::isfinite(picture.pixels[i]) && std::abs(picture.pixels[i]) > half_max)
-        formats[i % channels] = OIIO::TypeDesc::FLOAT;
+  std::vector<float> largest(channels, 0);
+  for (size_t i = 0; half && i < picture.pixels.size(); ++i)
+    if (std::isfinite(picture.pixels[i]))
+      largest[i % channels] = std::max(largest[i % channels], std::abs(picture.pixels[i]));
+  std::vector<OIIO::TypeDesc> formats(channels, OIIO::TypeDesc::FLOAT);
+  for (size_t c = 0; half && c < channels; ++c)
+    if (!is_wide(picture.names[c]) && (largest[c] == 0 || (largest[c] >= half_dim && largest[c] <= half_max)))
+      formats[c] = OIIO::TypeDesc::HALF;
   return formats;
 }
 

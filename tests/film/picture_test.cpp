@@ -102,6 +102,22 @@ TEST_F(PictureFile, HalfNeverOverflows) {
   EXPECT_EQ(spec.channelformat(1), OIIO::TypeDesc::FLOAT);
 }
 
+TEST_F(PictureFile, HalfKeepsWhatIsDim) {
+  const std::vector<std::string> names = {"R", "G", "B", "Variance.R", "P.X", "N.X"};
+  Picture out = noise(8, 8, names, 1);
+  const auto channel = [&](size_t c, float factor) {
+    for (size_t i = c; i < out.pixels.size(); i += names.size()) out.pixels[i] *= factor;
+  };
+  channel(1, 1e-9f), channel(5, 0);
+  write_exr(file("a.exr"), out, {}, true);
+  const Picture in = select(read_picture(file("a.exr")), names);
+  for (const size_t c : {1, 3, 4})
+    for (size_t i = c; i < out.pixels.size(); i += names.size()) EXPECT_EQ(in.pixels[i], out.pixels[i]) << names[c];
+  const auto spec = OIIO::ImageInput::open(file("a.exr"))->spec();
+  for (const char* half : {"R", "B", "N.X"})
+    EXPECT_EQ(spec.channelformat(spec.channelindex(half)), OIIO::TypeDesc::HALF) << half;
+}
+
 TEST_F(PictureFile, NanAndInfinitySurvive) {
   Picture out = noise(4, 1, {"R", "G", "B"}, 1);
   out.pixels[1] = std::numeric_limits<float>::quiet_NaN();
