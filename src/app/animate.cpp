@@ -137,6 +137,7 @@ void write_frame(Work& w, int frame, const Stage& stage, Run& run, const RenderS
   const Picture image = develop(state.film);
   Metadata data = metadata(run, state);
   data["ajar:frame"] = frame_key(w, frame, *stage.scene);
+  data["ajar:mean"] = mean_of(image);
   write_png(frame_name(w.png, frame), image);
   run.triangles = count_triangles(*stage.scene), run.accel_bytes = stage.accel->bytes();
   run.write_seconds = wall_seconds() - wall, run.write_cpu = process_cpu_seconds() - cpu;

@@ -45,18 +45,29 @@ bool is_of(const std::string& path, const std::string& key) {
   }
 }
 
-FrameFigures measure_frame(const std::string& path, const Picture& image, const Timeline& timeline, int frame) {
+Error damaged(const std::string& path) {
+  return Error(fmt::format("{}: is no frame, or a damaged one; remove it, and it is rendered again", path));
+}
+
+Metadata frame_metadata(const std::string& path) {
+  try {
+    return read_metadata(path);
+  } catch (const Error&) {
+    throw damaged(path);
+  }
+}
+
+// What the file tells without its pixels; of a frame without a mean it is NaN.
+FrameFigures measure_frame(const std::string& path, const Timeline& timeline, int frame) {
   FrameFigures f;
   f.frame = frame;
   f.parameters = parameters_at(timeline, frame);
   if (const auto time = time_at(timeline, frame)) f.parameters["time"] = fmt::format("{:.9g}", *time);
-  const Metadata metadata = read_metadata(path);
+  const Metadata metadata = frame_metadata(path);
   f.seconds = number_or(metadata, "ajar:seconds", NAN);
   f.cpu_seconds = number_or(metadata, "ajar:cpu_seconds", NAN);
   f.spp = number_or(metadata, "ajar:spp", NAN);
-  double sum = 0;
-  for (const float x : image.pixels) sum += x;
-  f.mean = sum / double(image.pixels.size());
+  f.mean = number_or(metadata, "ajar:mean", NAN);
   return f;
 }
 
@@ -86,8 +97,14 @@ Picture read_frame(const std::string& path) {
   try {
     return select(read_picture(path), {"R", "G", "B"});
   } catch (const Error&) {
-    throw Error(fmt::format("{}: is no frame, or a damaged one; remove it, and it is rendered again", path));
+    throw damaged(path);
   }
+}
+
+double mean_of(const Picture& image) {
+  double sum = 0;
+  for (const float x : image.pixels) sum += x;
+  return sum / double(image.pixels.size());
 }
 
 std::optional<double> time_at(const Timeline& t, int frame) {
@@ -185,22 +202,21 @@ std::vector<FrameFigures> measure(const FramePattern& pattern, const Timeline& t
     const std::string path = frame_name(pattern, f);
     const Picture last = std::exchange(before, {}), last_truth = std::exchange(reference_before, {});
     if (!is_there(path) || !is_of(path, key)) continue;
-    Picture image = read_frame(path);
-    out.push_back(measure_frame(path, image, timeline, f));
+    out.push_back(measure_frame(path, timeline, f));
     const std::string name = reference ? frame_name(*reference, f) : "";
-    if (!reference || !is_there(name)) continue;
+    const bool compared = reference && is_there(name);
+    if (!compared && !std::isnan(out.back().mean)) continue;
+    Picture image = read_frame(path);
+    if (std::isnan(out.back().mean)) out.back().mean = mean_of(image);
+    if (!compared) continue;
     Picture truth = read_rgb(name);
     if (truth.width != image.width || truth.height != image.height)
       throw Error(fmt::format("--reference {}: is {}x{}, the frame {}x{}; use --size", name, truth.width, truth.height,
                               image.width, image.height));
     const Metrics m = compare(image, truth, false);
     out.back().relmse = m.relmse, out.back().relmse_trimmed = m.relmse_trimmed;
-    if (last.width > 0 && (last.width != image.width || last.height != image.height))
-      throw Error(
-          fmt::format("{}: is {}x{}, the frame before it {}x{}; flicker is of frames of one size: give --size, or "
-                      "leave out --reference",
-                      path, image.width, image.height, last.width, last.height));
-    if (last.width > 0) out.back().flicker = flicker(last, image, last_truth, truth);
+    if (last.width == image.width && last.height == image.height)
+      out.back().flicker = flicker(last, image, last_truth, truth);
     before = std::move(image), reference_before = std::move(truth);
   }
   return out;

@@ -55,17 +55,24 @@ std::string describe(const Timeline& timeline, int frame);
 /// The image of a finished frame. Throws Error, which says what to do about a damaged one.
 Picture read_frame(const std::string& path);
 
+/// Of R, G and B.
+double mean_of(const Picture& image);
+
 /// The newest carried fields in a folder that belong to this key and to no frame after the given one.
 std::optional<Carried> find_carried(const std::string& folder, const std::string& key, int last);
 
 /// The figures of all frames of the animation that are there. reference: empty for none; of what is missing there no
-/// error is known. key: with which the names of its frames begin, in their files; empty: whatever is there counts.
+/// error is known, nor
+/// flicker of steps between frames of two sizes. Pixels are read where they are compared alone, or where a frame's file
+/// does not tell its mean. key: with which the names of its frames begin, in their files; empty: whatever is there
+/// counts.
 std::vector<FrameFigures> measure(const FramePattern& pattern, const Timeline& timeline,
                                   const std::optional<FramePattern>& reference, const std::string& key = {});
 
 /// Frames a second, where the user names none.
 inline constexpr double usual_fps = 24;
-/// Throws Error where the name is none for a film, or not for one of so many frames a second, or ffmpeg is not installed.
+/// Throws Error where the name is none for a film, or not for one of so many frames a second, or ffmpeg is not
+/// installed.
 void check_video(const std::string& out, double fps);
 /// Makes a film of the PNG files of a range. Throws Error, and Interrupted.
 void make_video(const FramePattern& png, const FrameRange& frames, double fps, const std::string& out);
