@@ -179,6 +179,13 @@ float quadric_error(const Shape& shape, const Vec3& p) {
   return error_scale * (max_abs(p) + magnification(shape.to_world)) + least_error;
 }
 
+// Of a point at a hit. On spheres, which are not sheared, all but its rounding is in double: else a ground as large as
+// the Earth would send rays off from metres above it.
+float hit_error(const Shape& shape, const Vec3& p, float t) {
+  if (shape.kind != ShapeKind::sphere) return quadric_error(shape, p);
+  return error_scale * max_abs(p) + 0x1p-44f * (magnification(shape.to_world) + t) + least_error;
+}
+
 // In double: the ray may have started far away. The point on the ray is moved onto the object by a first-order step,
 // which leaves an error of the second order of a small distance.
 void set_quadric_surface(const Scene& scene, const Hit& hit, const Vec3& ray_o, const Vec3& ray_d, Surface& s) {
@@ -189,7 +196,7 @@ void set_quadric_surface(const Scene& scene, const Hit& hit, const Vec3& ray_o, 
   const glm::dvec3 q = glm::dmat4(shape.to_object) * glm::dvec4(p, 1);
   const UnitPoint at = unit_point(shape.kind, q);
   s.p = p + glm::dvec3(glm::dmat4(shape.to_world) * glm::dvec4(at.p - q, 0));
-  s.error = quadric_error(shape, s.p);
+  s.error = instance ? quadric_error(shape, s.p) : hit_error(shape, s.p, hit.t);
   s.uv = hit.bary;
   set_quadric_axes(shape, at, s);
   Vec3 shading = s.ng;

@@ -108,5 +108,35 @@ TEST(Offset, LeavesTheSurfaceItStartsFrom) {
       }
 }
 
+// A ground sphere touches the origin, around which the scene is: rays there start near it however large it is. Seen
+// from outside and from inside, near and far.
+TEST(Offset, IsSmallOnTheTopOfALargeSphere) {
+  for (const float radius : {1e2f, 1e4f, 6.4e6f, 1e7f})
+    for (const float away : {0.1f, 10.0f, 1e3f, 10 * radius})
+      for (const bool inside : {false, true})
+        for (uint32_t i = 0; i < 300; ++i) {
+          Scene scene;
+          kit::add_shape(scene, ShapeKind::sphere, kit::placed(float(i), Vec3(radius), {0, -radius, 0}));
+          finish(scene);
+          const Accel accel(scene);
+          const Vec3 up = inside ? Vec3(0, -1, 0) : Vec3(0, 1, 0);
+          const Vec3 target = std::pow(10.0f, 4 * random2(i, 11).x - 3) * Vec3(random2(i, 12) - 0.5f, 0);
+          const Vec3 o = Vec3(target.x, 0, target.y) +
+                         std::min(away, inside ? radius / 2 : infinity) * (up + Vec3(random2(i, 13) - 0.5f, 0));
+          const Vec3 d = glm::normalize(Vec3(target.x, -1e-3f * away, target.y) - o);
+          Hit hit;
+          if (!accel.intersect(o, d, 0, infinity, hit)) continue;
+          const Surface s = make_surface(scene, hit, o, d);
+          EXPECT_LE(s.error, 0x1p-20f * max_abs(s.p) + 1e-12f * (radius + hit.t)) << radius << " from " << away;
+          for (uint32_t j = 0; j < 40; ++j) {
+            const Vec3 w = leaving(s.ng, i * 100 + j);
+            Hit next;
+            if (!accel.intersect(offset(s.p, s.ng, s.error, w), w, 0, infinity, next)) continue;
+            EXPECT_TRUE(glm::dot(w, s.ng) < 0 && next.t > -1e-3f * radius * glm::dot(w, s.ng))
+                << radius << " from " << away << " " << inside;
+          }
+        }
+}
+
 }  // namespace
 }  // namespace ajar
