@@ -102,12 +102,18 @@ Outline outline_of(const Scene& scene, uint32_t id, int depth) {
   }
 }
 
+float alpha_of_row(int row) {
+  if (row <= table_alphas) return sqr(float(row) / table_alphas);
+  const int left = table_alphas + table_wide_alphas - row;
+  return left > 0 ? sqr(float(table_wide_alphas) / float(left)) : widest_in_table;
+}
+
 void fill_table(Material& m) {
   const bool textured = m.alpha_u.texture != none;
-  const int rows = textured ? table_alphas + 1 : 1;
+  const int rows = textured ? table_alphas + table_wide_alphas + 1 : 1;
   m.entering_table.resize(size_t(rows) * table_row);
   for (int r = 0; r < rows; ++r) {
-    const float alpha = textured ? sqr(float(r) / table_alphas) : m.alpha_u.value.x;
+    const float alpha = textured ? alpha_of_row(r) : m.alpha_u.value.x;
     float* row = m.entering_table.data() + r * table_row;
     double mean = 0;
     for (int i = 0; i <= table_cosines; ++i) {

@@ -182,7 +182,7 @@ TEST(RoughBoundary, TableIsTheTransmissionOfRoughGlass) {
 }
 
 TEST(RoughBoundary, TexturedAlphaInterpolates) {
-  for (const float alpha : {0.003f, 0.05f, 0.2f, 0.7f}) {
+  for (const float alpha : {0.003f, 0.05f, 0.2f, 0.7f, 1.0f, 1.5f, 3.0f, 20.0f, 100.0f}) {
     Material m = white(MaterialKind::roughplastic, Microfacet::ggx, alpha);
     const Scene constant = scene_of({m});
     m.alpha_u.texture = 0;  // never looked up here

@@ -8,7 +8,10 @@ namespace ajar {
 
 inline constexpr int table_cosines = 128;            ///< intervals of the cosine; an entry more than that
 inline constexpr int table_row = table_cosines + 2;  ///< the cosine-weighted mean stands before them
-inline constexpr int table_alphas = 16;              ///< intervals of sqrt(alpha) from 0 to 1, if alpha is textured
+// If alpha is textured, rows for it:
+inline constexpr int table_alphas = 16;         ///< intervals of sqrt(alpha) from 0 to 1
+inline constexpr int table_wide_alphas = 8;     ///< intervals of 1 / sqrt(alpha) beyond, from 1 to 0
+inline constexpr float widest_in_table = 1e6f;  ///< alpha of the last row, where nothing changes any more
 
 /// Linear interpolation in one row.
 inline float table_at(const float* row, float cos) {
@@ -24,8 +27,9 @@ struct TableRow {
 };
 inline TableRow table_row_of(const Material& m, float alpha) {
   if (m.entering_table.size() == table_row) return {m.entering_table.data(), 0};
-  const float x = std::sqrt(std::min(alpha, 1.0f)) * table_alphas;
-  const int i = std::min(int(x), table_alphas - 1);
+  const float root = std::sqrt(std::min(alpha, widest_in_table));
+  const float x = root < 1 ? root * table_alphas : table_alphas + (1 - 1 / root) * table_wide_alphas;
+  const int i = std::min(int(x), table_alphas + table_wide_alphas - 1);
   return {m.entering_table.data() + i * table_row, x - float(i)};
 }
 
