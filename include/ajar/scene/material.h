@@ -50,6 +50,7 @@ struct alignas(64) Material {
   WardKind ward = WardKind::balanced;
   Inner inner = Inner::linear;  ///< plastics
   bool simple = false;          ///< roughdiffuse: Oren and Nayar's qualitative model
+  bool hides = false;           ///< roughplastic: what facets hide of light inside is lost, not reflected
   std::array<uint32_t, 4> nested{none, none, none, none};
   Slot reflectance{0.5f};             ///< diffuse, plastics' and phong's diffuse part, principled base colour
   Slot specular{1.0f};                ///< specular reflectance factor

@@ -43,9 +43,10 @@ inline float transmittance(const RoughPlastic& p, float cos) {
   const float t = table_at(p.table, cos);
   return p.between > 0 ? t + (table_at(p.table + table_row, cos) - t) * p.between : t;
 }
-inline float entering(const RoughPlastic& p) {
-  return p.between > 0 ? p.table[0] + (p.table[table_row] - p.table[0]) * p.between : p.table[0];
+inline float entry(const RoughPlastic& p, int i) {
+  return p.between > 0 ? p.table[i] + (p.table[table_row + i] - p.table[i]) * p.between : p.table[i];
 }
+inline float entering(const RoughPlastic& p) { return entry(p, 0); }
 inline Facets facets(const RoughPlastic& p) { return {p.alpha, p.alpha, p.kind}; }
 
 inline BsdfEval combine(const RoughPlastic& p, const Vec3& wo, const Vec3& wi, const Glint& g, float to, float ti) {

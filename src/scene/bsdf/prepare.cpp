@@ -12,10 +12,11 @@
 
 namespace ajar {
 
-float rough_transmittance(Microfacet kind, float alpha, float ior, float cos) {
-  constexpr int n = 16;
-  const Facets f{alpha, alpha, kind};
-  const Vec3 wo{safe_sqrt(1 - cos * cos), 0, std::max(cos, 1e-6f)};
+namespace {
+
+// Mean of value(m) over n * n normals that are visible from wo.
+template <int n, class Value>
+float mean_over_facets(const Facets& f, const Vec3& wo, const Value& value) {
   // Midpoints after u = t^2 (3 - 2t), which flattens the integrand's steep ends.
   const auto at = [](int i) { return (float(i) + 0.5f) / n; };
   const auto warp = [](float t) { return t * t * (3 - 2 * t); };
@@ -25,14 +26,33 @@ float rough_transmittance(Microfacet kind, float alpha, float ior, float cos) {
     for (int j = 0; j < n; ++j) {
       const double weight = density(at(i)) * density(at(j));
       weights += weight;
-      const Vec3 m = sample_facet(f, wo, {warp(at(i)), warp(at(j))});
-      float cos_t;
-      const float through = 1 - fresnel_dielectric(glm::dot(wo, m), ior, cos_t);
-      const Vec3 wi = refracted(wo, m, ior, cos_t);
-      if (wi.z < 0) sum += weight * through * 2 * facet_visibility(f, wi) * -wi.z;
+      sum += weight * value(sample_facet(f, wo, {warp(at(i)), warp(at(j))}));
     }
   }
   return float(sum / weights);
+}
+Vec3 along(float cos) { return {safe_sqrt(1 - cos * cos), 0, std::max(cos, 1e-6f)}; }
+
+}  // namespace
+
+float rough_transmittance(Microfacet kind, float alpha, float ior, float cos) {
+  const Facets f{alpha, alpha, kind};
+  const Vec3 wo = along(cos);
+  return mean_over_facets<16>(f, wo, [&](const Vec3& m) {
+    float cos_t;
+    const float through = 1 - fresnel_dielectric(glm::dot(wo, m), ior, cos_t);
+    const Vec3 wi = refracted(wo, m, ior, cos_t);
+    return wi.z < 0 ? through * 2 * facet_visibility(f, wi) * -wi.z : 0;
+  });
+}
+
+float rough_reflectance(Microfacet kind, float alpha, float ior, float cos) {
+  const Facets f{alpha, alpha, kind};
+  const Vec3 wo = along(cos);
+  return mean_over_facets<32>(f, wo, [&](const Vec3& m) {  // total reflection begins at an edge
+    const Vec3 wi = mirrored(wo, m);
+    return wi.z > 0 ? fresnel_dielectric(glm::dot(wo, m), ior) * 2 * facet_visibility(f, wi) * wi.z : 0;
+  });
 }
 
 namespace {
@@ -108,6 +128,17 @@ float alpha_of_row(int row) {
   return left > 0 ? sqr(float(table_wide_alphas) / float(left)) : widest_in_table;
 }
 
+// eta^2 (1 - R), R being the share of diffuse light inside that the boundary reflects.
+float not_reflected_inside(const Material& m, float alpha) {
+  constexpr int n = 64;
+  double reflected = 0;
+  for (int i = 0; i < n; ++i) {
+    const float cos = (float(i) + 0.5f) / n;
+    reflected += 2.0 / n * double(cos) * rough_reflectance(m.distribution, alpha, 1 / m.ior, cos);
+  }
+  return float(double(m.ior) * m.ior * (1 - reflected));
+}
+
 void fill_table(Material& m) {
   const bool textured = m.alpha_u.texture != none;
   const int rows = textured ? table_alphas + table_wide_alphas + 1 : 1;
@@ -122,15 +153,17 @@ void fill_table(Material& m) {
       mean += (i == table_cosines ? 1 : 2) * double(cos) * row[1 + i];
     }
     row[0] = float(mean / table_cosines);
+    // At least what enters leaves: rounding aside.
+    row[table_leaving] = m.hides ? std::max(not_reflected_inside(m, std::max(alpha, min_alpha)), row[0]) : row[0];
   }
 }
 
 // Rough plastics of one boundary share a table's numbers.
 void fill_tables(Scene& scene) {
-  std::map<std::tuple<float, Microfacet, float>, std::vector<Material*>> boundaries;
+  std::map<std::tuple<float, Microfacet, float, bool>, std::vector<Material*>> boundaries;
   for (Material& m : scene.materials)
     if (m.kind == MaterialKind::roughplastic)
-      boundaries[{m.ior, m.distribution, m.alpha_u.texture != none ? -1 : m.alpha_u.value.x}].push_back(&m);
+      boundaries[{m.ior, m.distribution, m.alpha_u.texture != none ? -1 : m.alpha_u.value.x, m.hides}].push_back(&m);
   std::vector<std::vector<Material*>> apart;
   for (auto& [boundary, materials] : boundaries) apart.push_back(std::move(materials));
   parallel_for(apart.size(), [&](size_t i) {

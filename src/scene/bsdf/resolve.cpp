@@ -60,12 +60,13 @@ Facets facets(const Resolver& r, const Material& m) {
           m.distribution};
 }
 
-// Diffuse light that enters, bounces inside under the boundary and leaves: internal reflectance is 1 - entering /
-// eta^2, since a boundary lets the same pass both ways but for the basic solid angle.
-Rgb under_boundary(const Material& m, const Rgb& rho, float entering) {
+// Diffuse light that enters, bounces inside under the boundary and leaves: internal reflectance is 1 - leaving / eta^2.
+// Where nothing is lost as much leaves as enters: a boundary lets the same pass both ways but for the basic solid
+// angle.
+Rgb under_boundary(const Material& m, const Rgb& rho, float leaving) {
   if (m.inner == Inner::lost) return rho;
-  if (m.inner == Inner::linear) return rho / entering;
-  return rho / (m.ior * m.ior * (Rgb(1) - rho) + rho * entering);
+  if (m.inner == Inner::linear) return rho / leaving;
+  return rho / (m.ior * m.ior * (Rgb(1) - rho) + rho * leaving);
 }
 float specular_share(const Rgb& specular, const Rgb& diffuse) {
   const float s = max_component(specular), d = max_component(diffuse);
@@ -85,7 +86,7 @@ void set_roughplastic(const Resolver& r, const Material& m, Lobe& lobe) {
   lobe.kind = LobeKind::roughplastic;
   lobe.roughplastic = {row.at, row.between,   Rgb(0), specular, m.ior, specular_share(specular, rho),
                        alpha,  m.distribution};
-  lobe.roughplastic.base = under_boundary(m, rho, entering(lobe.roughplastic));
+  lobe.roughplastic.base = under_boundary(m, rho, entry(lobe.roughplastic, table_leaving));
 }
 
 void set_principled(const Resolver& r, const Material& m, Lobe& lobe) {

@@ -138,6 +138,7 @@ void roughplastic(Params& p, Material& m) {
   plastic(p, m);
   distribution(p, m);
   m.alpha_u = m.alpha_v = roughness(p, "alpha", 0.1f);
+  m.hides = !p.loader.document.old;
 }
 
 // Roughness and colours of roughplastic; what the boundary reflects back inside is lost.

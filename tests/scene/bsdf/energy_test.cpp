@@ -181,9 +181,59 @@ TEST(RoughBoundary, TableIsTheTransmissionOfRoughGlass) {
     }
 }
 
+// Reflectance from inside, by rough glass that light from all around meets there.
+double reflected_inside(Microfacet distribution, float alpha, float ior) {
+  Material m = white(MaterialKind::roughdielectric, distribution, alpha);
+  m.ior = ior;
+  const Resolved r = resolved({m}, {0, 0, -1});
+  constexpr int n = 1 << 18;
+  double sum = 0;
+  for (int i = 0; i < n; ++i) {
+    Sampler sampler = make_sampler(SamplerKind::sobol, 3, Side::camera, 2, uint32_t(i));
+    const Vec2 u = sampler.next2(), v = sampler.next2();
+    const float cos = std::sqrt(1 - u.x);
+    const Vec3 wo{std::sqrt(u.x) * std::cos(2 * pi * u.y), std::sqrt(u.x) * std::sin(2 * pi * u.y), -cos};
+    BsdfSample s;
+    if (sample(r.bsdf, wo, sampler.next1(), v, Mode::importance, s) && s.wi.z < 0) sum += s.weight.x;
+  }
+  return sum / n;
+}
+
+// In Mitsuba 2 and 3 a diffuse base gets back what the boundary reflects, rho T T / (eta^2 (1 - R)), with rho R for R
+// if it is not linear; in 0.6 all that does not leave.
+TEST(RoughBoundary, OnlyWhatIsReflectedInsideComesBack) {
+  for (const Microfacet d : {Microfacet::beckmann, Microfacet::ggx})
+    for (const float alpha : {0.1f, 0.3f, 0.8f})
+      for (const float ior : {1.3f, 1.49f, 0.8f}) {
+        const double inside = reflected_inside(d, alpha, ior);
+        for (const bool nonlinear : {false, true}) {
+          Material m = white(MaterialKind::roughplastic, d, alpha);
+          m.ior = ior;
+          m.inner = nonlinear ? Inner::nonlinear : Inner::linear;
+          m.reflectance = 0.6f;
+          m.specular = 0.0f;
+          m.hides = true;
+          const double rho = 0.6, base = rho / (ior * ior * (1 - (nonlinear ? rho : 1) * inside));
+          const Vec3 wo = direction(0.4f, 0), wi = direction(0.6f, 1);  // not near total reflection
+          const double both =
+              double(rough_transmittance(d, alpha, ior, wo.z)) * double(rough_transmittance(d, alpha, ior, wi.z));
+          const Resolved r = resolved({m});
+          const double hiding = eval(r.bsdf, wo, wi, Mode::radiance).f.x;
+          EXPECT_NEAR(hiding, base * both * inv_pi, 0.003 * hiding) << alpha << " " << ior << " " << nonlinear;
+          m.hides = false;
+          const double all = eval(resolved({m}).bsdf, wo, wi, Mode::radiance).f.x;
+          EXPECT_GE(all, hiding);
+          if (alpha == 0.3f && ior > 1.4f && !nonlinear) {
+            EXPECT_GT(all, 1.02 * hiding);
+          }
+        }
+      }
+}
+
 TEST(RoughBoundary, TexturedAlphaInterpolates) {
   for (const float alpha : {0.003f, 0.05f, 0.2f, 0.7f, 1.0f, 1.5f, 3.0f, 20.0f, 100.0f}) {
     Material m = white(MaterialKind::roughplastic, Microfacet::ggx, alpha);
+    m.hides = true;
     const Scene constant = scene_of({m});
     m.alpha_u.texture = 0;  // never looked up here
     const Scene textured = scene_of({m});
@@ -193,6 +243,8 @@ TEST(RoughBoundary, TexturedAlphaInterpolates) {
       const float between = table_at(b.at, cos) * (1 - b.between) + table_at(b.at + table_row, cos) * b.between;
       EXPECT_NEAR(between, table_at(a.at, cos), 8e-3f) << alpha << " " << cos;
     }
+    const float leaving = b.at[table_leaving] * (1 - b.between) + b.at[table_row + table_leaving] * b.between;
+    EXPECT_NEAR(leaving, a.at[table_leaving], 0.02f * a.at[table_leaving]) << alpha;
   }
 }
 

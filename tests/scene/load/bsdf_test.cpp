@@ -134,6 +134,8 @@ TEST(Bsdf, Plastics) {
   EXPECT_FLOAT_EQ(m.alpha_u.value.x, 0.3f);
   EXPECT_EQ(m.distribution, Microfacet::ggx);
   EXPECT_NE(m.reflectance.texture, none);
+  EXPECT_TRUE(m.hides);
+  EXPECT_FALSE(last(bsdf("roughplastic"), {}, "0.6.0").hides);
   EXPECT_SAYS(error_of(bsdf("plastic", "<boolean name='nonlinear' value='maybe'/>")), "should be true or false");
 }
 

@@ -1,5 +1,6 @@
 // Enters: a rough dielectric boundary.
-// Leaves: how much light enters through it from outside, tabulated over the cosine and, where textures vary it, alpha.
+// Leaves: how much light enters through it from outside, tabulated over the cosine and, where textures vary it, alpha;
+// and how much it sends back inside.
 #pragma once
 
 #include "ajar/scene/material.h"
@@ -7,7 +8,8 @@
 namespace ajar {
 
 inline constexpr int table_cosines = 128;            ///< intervals of the cosine; an entry more than that
-inline constexpr int table_row = table_cosines + 2;  ///< the cosine-weighted mean stands before them
+inline constexpr int table_row = table_cosines + 3;  ///< the cosine-weighted mean stands before them, and behind
+inline constexpr int table_leaving = table_row - 1;  ///< eta^2 (1 - R), R the share of light inside that stays there
 // If alpha is textured, rows for it:
 inline constexpr int table_alphas = 16;         ///< intervals of sqrt(alpha) from 0 to 1
 inline constexpr int table_wide_alphas = 8;     ///< intervals of 1 / sqrt(alpha) beyond, from 1 to 0
@@ -36,5 +38,8 @@ inline TableRow table_row_of(const Material& m, float alpha) {
 /// Share of the light from the cosine that a rough boundary lets through, by refraction at visible normals with masking
 /// of the refracted direction: the integral of the transmission part of roughdielectric.
 float rough_transmittance(Microfacet kind, float alpha, float ior, float cos);
+/// What it reflects, by mirroring at visible normals with masking of the mirrored direction: what facets hide is lost,
+/// so that the two add up to less than 1.
+float rough_reflectance(Microfacet kind, float alpha, float ior, float cos);
 
 }  // namespace ajar
