@@ -48,7 +48,8 @@ float breadth(const Lobe& lobe) {
     case LobeKind::plastic:
       return 1 - boundary(lobe.plastic.share, lobe.plastic.ior);
     case LobeKind::roughplastic:
-      return 1 - boundary(lobe.roughplastic.share, lobe.roughplastic.ior) * narrow(lobe.roughplastic.alpha);
+      return 1 - boundary(lobe.roughplastic.share, lobe.roughplastic.ior) *
+                     narrow(std::min(lobe.roughplastic.facets.alpha_u, lobe.roughplastic.facets.alpha_v));
     case LobeKind::roughconductor:
       return 1 - narrow(std::min(lobe.roughconductor.facets.alpha_u, lobe.roughconductor.facets.alpha_v));
     case LobeKind::phong:

@@ -17,7 +17,7 @@ enum class MaterialKind : uint8_t {
   roughdielectric,  ///< ior, specular, transmittance, alpha_u, alpha_v, distribution
   thindielectric,   ///< ior, specular, transmittance: a pane, light goes straight through
   plastic,          ///< ior, reflectance, specular, inner
-  roughplastic,     ///< ior, reflectance, specular, inner, alpha_u, distribution
+  roughplastic,     ///< ior, reflectance, specular, inner, hides, alpha_u, distribution; if lost alpha_v too
   phong,            ///< reflectance, specular, exponent
   principled,       ///< ior, reflectance (base colour), and the last block of Material
   roughdiffuse,     ///< reflectance, alpha_u (slope, RMS), simple
@@ -39,7 +39,8 @@ enum class Microfacet : uint8_t { beckmann, ggx };
 enum class WardKind : uint8_t { ward, duer, balanced };
 
 /// What happens to diffuse light that a plastic's boundary sends back inside: it comes out in the end, with the colour
-/// of the first bounce or of all of them; or it is lost.
+/// of the first bounce or of all of them; or it is lost, and light enters and leaves as by a smooth boundary (Mitsuba
+/// 3's pplastic).
 enum class Inner : uint8_t { linear, nonlinear, lost };
 
 /// One <bsdf>. Each kind reads the fields that its line in docs/scenes.md names; the rest keep their defaults. What

@@ -45,7 +45,7 @@ float roughness(const Lobe& lobe) {
     case LobeKind::roughdielectric:
       return narrower(lobe.roughdielectric.facets);
     case LobeKind::roughplastic:
-      return lobe.roughplastic.alpha;
+      return narrower(lobe.roughplastic.facets);
     case LobeKind::phong:
       return lobe.phong.share > 0 ? std::sqrt(2 / (lobe.phong.exponent + 2)) : 1;
     case LobeKind::ward:

@@ -16,7 +16,7 @@ Gloss parts_of(const Lobe& lobe, float albedo, const Vec3& wo) {
       return {0, albedo, 1, width_of(lobe.roughconductor.facets)};
     case LobeKind::roughplastic: {
       const float f0 = reflected_at_right_angles(lobe.roughplastic.ior), peak = luminance(lobe.roughplastic.specular);
-      return {std::max(albedo - peak * schlick(f0, wo.z), 0.0f), peak, f0, lobe.roughplastic.alpha};
+      return {std::max(albedo - peak * schlick(f0, wo.z), 0.0f), peak, f0, width_of(lobe.roughplastic.facets)};
     }
     case LobeKind::phong:
       return {luminance(lobe.phong.diffuse), luminance(lobe.phong.specular), 1,

@@ -37,7 +37,8 @@ inline Rgb albedo(const Plastic& p, const Vec3& wo) {
   return p.specular * reflected + p.base * ((1 - reflected) * p.entering);
 }
 
-// roughplastic: the same with a rough boundary, whose transmittance comes from the material's table.
+// roughplastic: the same with a rough boundary, whose transmittance comes from the material's table (that of a smooth
+// one where light sent back inside is lost).
 
 inline float transmittance(const RoughPlastic& p, float cos) {
   const float t = table_at(p.table, cos);
@@ -47,7 +48,6 @@ inline float entry(const RoughPlastic& p, int i) {
   return p.between > 0 ? p.table[i] + (p.table[table_row + i] - p.table[i]) * p.between : p.table[i];
 }
 inline float entering(const RoughPlastic& p) { return entry(p, 0); }
-inline Facets facets(const RoughPlastic& p) { return {p.alpha, p.alpha, p.kind}; }
 
 inline BsdfEval combine(const RoughPlastic& p, const Vec3& wo, const Vec3& wi, const Glint& g, float to, float ti) {
   const float po = specular_probability(p.share, 1 - to), pi_ = specular_probability(p.share, 1 - ti);
@@ -56,7 +56,7 @@ inline BsdfEval combine(const RoughPlastic& p, const Vec3& wo, const Vec3& wi, c
 }
 inline BsdfEval eval(const RoughPlastic& p, const Vec3& wo, const Vec3& wi, Mode) {
   if (!in_front(wo, wi)) return {};
-  return combine(p, wo, wi, glint_between(facets(p), wo, wi), transmittance(p, wo.z), transmittance(p, wi.z));
+  return combine(p, wo, wi, glint_between(p.facets, wo, wi), transmittance(p, wo.z), transmittance(p, wi.z));
 }
 inline bool sample(const RoughPlastic& p, const Vec3& wo, float u_lobe, const Vec2& u, Mode, BsdfSample& out) {
   if (!(wo.z > 0)) return false;
@@ -64,11 +64,11 @@ inline bool sample(const RoughPlastic& p, const Vec3& wo, float u_lobe, const Ve
   Glint g;
   Vec3 wi;
   if (take(u_lobe, specular_probability(p.share, 1 - to))) {
-    if (!sample_glint(facets(p), wo, u, wi, g)) return false;
+    if (!sample_glint(p.facets, wo, u, wi, g)) return false;
   } else {
     wi = cosine_direction(u);
     if (!(wi.z > 0)) return false;
-    g = glint_between(facets(p), wo, wi);
+    g = glint_between(p.facets, wo, wi);
   }
   const BsdfEval e = combine(p, wo, wi, g, to, transmittance(p, wi.z));
   if (!(e.pdf > 0)) return false;

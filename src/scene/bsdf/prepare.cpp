@@ -140,7 +140,7 @@ float not_reflected_inside(const Material& m, float alpha) {
 }
 
 void fill_table(Material& m) {
-  const bool textured = m.alpha_u.texture != none;
+  const bool textured = m.alpha_u.texture != none && m.inner != Inner::lost;
   const int rows = textured ? table_alphas + table_wide_alphas + 1 : 1;
   m.entering_table.resize(size_t(rows) * table_row);
   for (int r = 0; r < rows; ++r) {
@@ -149,7 +149,8 @@ void fill_table(Material& m) {
     double mean = 0;
     for (int i = 0; i <= table_cosines; ++i) {
       const float cos = float(i) / table_cosines;
-      row[1 + i] = rough_transmittance(m.distribution, std::max(alpha, min_alpha), m.ior, cos);
+      row[1 + i] = m.inner == Inner::lost ? 1 - fresnel_dielectric(cos, m.ior)
+                                          : rough_transmittance(m.distribution, std::max(alpha, min_alpha), m.ior, cos);
       mean += (i == table_cosines ? 1 : 2) * double(cos) * row[1 + i];
     }
     row[0] = float(mean / table_cosines);
@@ -160,10 +161,12 @@ void fill_table(Material& m) {
 
 // Rough plastics of one boundary share a table's numbers.
 void fill_tables(Scene& scene) {
-  std::map<std::tuple<float, Microfacet, float, bool>, std::vector<Material*>> boundaries;
+  std::map<std::tuple<float, Microfacet, float, bool, bool>, std::vector<Material*>> boundaries;
   for (Material& m : scene.materials)
     if (m.kind == MaterialKind::roughplastic)
-      boundaries[{m.ior, m.distribution, m.alpha_u.texture != none ? -1 : m.alpha_u.value.x, m.hides}].push_back(&m);
+      boundaries[{m.ior, m.distribution, m.alpha_u.texture != none ? -1 : m.alpha_u.value.x, m.hides,
+                  m.inner == Inner::lost}]
+          .push_back(&m);
   std::vector<std::vector<Material*>> apart;
   for (auto& [boundary, materials] : boundaries) apart.push_back(std::move(materials));
   parallel_for(apart.size(), [&](size_t i) {
@@ -188,7 +191,8 @@ bool wants_tangents(const Scene& scene, uint32_t material) {
   const Material& m = scene.materials[material];
   if (m.kind == MaterialKind::bumpmap || m.kind == MaterialKind::normalmap) return true;
   if (m.kind == MaterialKind::principled) return m.anisotropic.texture != none || m.anisotropic.value != Rgb(0);
-  if (m.kind == MaterialKind::roughconductor || m.kind == MaterialKind::roughdielectric || m.kind == MaterialKind::ward)
+  if (m.kind == MaterialKind::roughconductor || m.kind == MaterialKind::roughdielectric ||
+      m.kind == MaterialKind::ward || (m.kind == MaterialKind::roughplastic && m.inner == Inner::lost))
     return m.alpha_u.texture != m.alpha_v.texture || m.alpha_u.value != m.alpha_v.value;
   return std::any_of(m.nested.begin(), m.nested.end(),
                      [&](uint32_t id) { return id != none && wants_tangents(scene, id); });

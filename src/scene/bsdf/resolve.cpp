@@ -81,11 +81,11 @@ void set_plastic(const Resolver& r, const Material& m, Lobe& lobe) {
 
 void set_roughplastic(const Resolver& r, const Material& m, Lobe& lobe) {
   const Rgb rho = look(r, m.reflectance), specular = look(r, m.specular);
-  const float alpha = std::max(look_scalar(r, m.alpha_u), min_alpha);
-  const TableRow row = table_row_of(m, alpha);
+  const float u = std::max(look_scalar(r, m.alpha_u), min_alpha);
+  const Facets f{u, m.inner == Inner::lost ? std::max(look_scalar(r, m.alpha_v), min_alpha) : u, m.distribution};
+  const TableRow row = table_row_of(m, f.alpha_u);
   lobe.kind = LobeKind::roughplastic;
-  lobe.roughplastic = {row.at, row.between,   Rgb(0), specular, m.ior, specular_share(specular, rho),
-                       alpha,  m.distribution};
+  lobe.roughplastic = {row.at, row.between, Rgb(0), specular, m.ior, specular_share(specular, rho), f};
   lobe.roughplastic.base = under_boundary(m, rho, entry(lobe.roughplastic, table_leaving));
 }
 

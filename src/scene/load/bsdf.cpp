@@ -145,7 +145,9 @@ void roughplastic(Params& p, Material& m) {
 void pplastic(Params& p, Material& m) {
   roughplastic(p, m);
   m.inner = Inner::lost;
+  m.hides = false;
   m.alpha_u = roughness(p, "alpha_u", m.alpha_u);
+  m.alpha_v = roughness(p, "alpha_v", m.alpha_v);
   note(p.loader, p.node, "light is not polarised in Ajar: its intensity alone is rendered");
 }
 

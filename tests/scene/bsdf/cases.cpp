@@ -117,6 +117,8 @@ void add_matte(std::vector<Case>& all) {
     }
   Material lost = coloured(MaterialKind::roughplastic);
   lost.inner = Inner::lost;
+  lost.alpha_u = 0.05f;
+  lost.alpha_v = 0.4f;
   all.push_back({"roughplastic_lost", {lost}});
 }
 

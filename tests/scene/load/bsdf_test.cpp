@@ -370,6 +370,8 @@ TEST(Bsdf, Polarised) {
   EXPECT_EQ(s.materials[0].kind, MaterialKind::roughplastic);
   EXPECT_EQ(s.materials[0].inner, Inner::lost);
   EXPECT_RGB(s.materials[0].alpha_u.value, 0.06, 0.06, 0.06, 1e-6);
+  EXPECT_RGB(s.materials[0].alpha_v.value, 0.06, 0.06, 0.06, 1e-6);
+  EXPECT_FLOAT_EQ(last(bsdf("pplastic", number("alpha_v", 0.3))).alpha_v.value.x, 0.3f);
   EXPECT_TRUE(says(s.notes, "not polarised"));
   s = load_inside(bsdf("polarizer", "<spectrum name='theta' value='90'/><rgb name='transmittance' value='.8'/>"));
   EXPECT_EQ(s.materials[0].kind, MaterialKind::thindielectric);

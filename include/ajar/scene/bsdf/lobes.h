@@ -78,8 +78,7 @@ struct RoughPlastic {
   float between;  ///< position between that row and the next, in [0, 1)
   Rgb base, specular;
   float ior, share;
-  float alpha;
-  Microfacet kind;
+  Facets facets;
 };
 
 /// Modified Phong (Lafortune and Willems 1994), normalised.
