@@ -42,7 +42,8 @@ inline float clearcoat_value(const Principled& p, const Vec3& wo, const Vec3& wi
   return 0.25f * p.clearcoat * (0.04f + 0.96f * weight) * d * smith_ggx(0.25f, wo) * smith_ggx(0.25f, wi);
 }
 
-/// Diffuse, retro-reflection, fake subsurface and sheen; cos_d between half vector and either direction.
+/// Diffuse, retro-reflection, fake subsurface and sheen (whole, but none where nothing is diffuse); cos_d between half
+/// vector and either direction.
 inline Rgb base_value(const Principled& p, float cos_o, float cos_i, float cos_d) {
   const float fo = schlick_weight(cos_o), fi = schlick_weight(cos_i);
   const float rr = 2 * p.roughness * cos_d * cos_d;
@@ -53,7 +54,7 @@ inline Rgb base_value(const Principled& p, float cos_o, float cos_i, float cos_d
     diffuse += (flat - diffuse) * p.flatness;
   }
   Rgb f = p.base * ((1 - p.metallic) * (1 - p.spec_trans) * inv_pi * diffuse);
-  if (p.sheen > 0)
+  if (p.sheen > 0 && p.spec_trans < 1)
     f += glm::mix(Rgb(1), tint(p.base), p.sheen_tint) * (p.sheen * (1 - p.metallic) * schlick_weight(cos_d));
   return f;
 }
@@ -66,7 +67,8 @@ inline PrincipledShares shares(const Principled& p, float cos) {
   float cos_t;
   const float dielectric = fresnel_dielectric(cos, p.eta, cos_t), through = refracting(p) * (1 - dielectric);
   const float s = luminance(front_fresnel(p, dielectric, cos, cos_t)) + through + 0.02f;
-  const float d = (1 - p.metallic) * ((1 - p.spec_trans) * max_component(p.base) + 0.1f * p.sheen);
+  const float sheen = p.spec_trans < 1 ? p.sheen : 0;
+  const float d = (1 - p.metallic) * ((1 - p.spec_trans) * max_component(p.base) + 0.1f * sheen);
   const float c = 0.25f * p.clearcoat * (0.04f + 0.96f * schlick_weight(p.eta > 1 ? cos : cos_t));
   const float scale = 1 / (s + d + c);
   return {d * scale, s * scale, c * scale};

@@ -397,6 +397,7 @@ TEST(Principled, PlainCornersAreKnownModels) {
   m.reflectance = Rgb(1);
   m.roughness = 0.5f;
   m.spec_trans = 1.0f;
+  m.sheen = 0.9f;  // belongs to the diffuse part alone
   const Resolved glass = resolved({m});
   Material g = white(MaterialKind::roughdielectric, Microfacet::ggx, 0.25f);
   g.ior = 1.5f;
@@ -409,6 +410,7 @@ TEST(Principled, PlainCornersAreKnownModels) {
   }
   // Diffuse at normal incidence is base / pi plus the dielectric's glint (Burley 2012, section 5.3).
   m.spec_trans = 0.0f;
+  m.sheen = 0.0f;
   m.reflectance = Rgb(0.6f);
   const Resolved plain = resolved({m});
   const float glint = 0.04f / (4 * pi * sqr(0.25f));  // F D / 4 with D = 1 / (pi alpha^2)
