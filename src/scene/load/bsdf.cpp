@@ -203,7 +203,7 @@ void principled(Params& p, Material& m) {
     if (!(specular >= 0 && specular <= 1)) fail(p.loader, p.node, "specular should be from 0 to 1");
     m.ior = float(2 / (1 - std::sqrt(0.08 * specular)) - 1);
   }
-  if (!(m.ior >= 1 && m.ior <= 1000)) fail(p.loader, p.node, "eta should be 1 or more");
+  if (!(m.ior >= 1e-3f && m.ior <= 1e3f)) fail(p.loader, p.node, "eta should be an index of refraction: 1.5");
 }
 
 void null(Params&, Material&) {}

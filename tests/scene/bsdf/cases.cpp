@@ -75,6 +75,9 @@ void add_principled(std::vector<Case>& all) {
   all.push_back({"principled_plain", {principled(0.5f, 0, 0)}});
   all.push_back({"principled_metal", {principled(0.3f, 0.9f, 0, 0.8f)}});
   all.push_back({"principled_glass", {principled(0.4f, 0, 1)}, true, true});
+  Material air = principled(0.4f, 0, 1);
+  air.ior = 0.67f;
+  all.push_back({"principled_air", {air}, true, true});
   Material cloth = principled(0.6f, 0.1f, 0);
   cloth.sheen = 0.8f;
   cloth.sheen_tint = 0.5f;
