@@ -32,7 +32,7 @@ float narrow(float alpha) { return 1 - std::clamp((alpha - 0.1f) * 2.5f, 0.0f, 1
 // The same of all that is on its base: what metal reflects, it reflects at all angles.
 float breadth(const Principled& p) {
   const float base = max_component(p.base), dielectric = 1 - p.metallic;
-  const float reflected = dielectric * sqr((p.eta - 1) / (p.eta + 1)), coat = 0.01f * p.clearcoat;
+  const float reflected = dielectric * sqr((p.eta - 1) / (p.eta + 1)), coat = 0.04f * p.clearcoat;
   const float all = dielectric * base + p.metallic * base + reflected + coat;
   const float narrow_part =
       (3 * reflected + p.metallic * base) * narrow(sqr(p.roughness) * p.aspect) + 3 * coat * narrow(p.clearcoat_alpha);

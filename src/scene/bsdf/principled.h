@@ -69,7 +69,9 @@ inline PrincipledShares shares(const Principled& p, float cos) {
   const float s = luminance(front_fresnel(p, dielectric, cos, cos_t)) + through + 0.02f;
   const float sheen = p.spec_trans < 1 ? p.sheen : 0;
   const float d = (1 - p.metallic) * ((1 - p.spec_trans) * max_component(p.base) + 0.1f * sheen);
-  const float c = 0.25f * p.clearcoat * (0.04f + 0.96f * schlick_weight(p.eta > 1 ? cos : cos_t));
+  // A quarter in its value, and 4 cos^2 because that is not divided by cosines; a floor where it grazes.
+  const float coat = 0.04f + 0.96f * schlick_weight(p.eta > 1 ? cos : cos_t);
+  const float c = p.clearcoat * std::max(coat * cos * cos, 0.02f);
   const float scale = 1 / (s + d + c);
   return {d * scale, s * scale, c * scale};
 }

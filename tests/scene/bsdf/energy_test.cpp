@@ -391,6 +391,35 @@ TEST(Ward, IsNormalised) {
   }
 }
 
+// Variance of a sample's weight over its mean squared.
+double relative_variance(const Bsdf& bsdf, const Vec3& wo) {
+  constexpr int n = 1 << 14;
+  double sum = 0, squares = 0;
+  for (int i = 0; i < n; ++i) {
+    Sampler sampler = make_sampler(SamplerKind::sobol, 7, Side::camera, 1, uint32_t(i));
+    const Vec2 u = sampler.next2();
+    BsdfSample s;
+    if (!sample(bsdf, wo, sampler.next1(), u, Mode::radiance, s)) continue;
+    sum += luminance(s.weight), squares += sqr(luminance(s.weight));
+  }
+  return n * squares / (sum * sum) - 1;
+}
+
+// A quarter of the Fresnel factor alone would leave up to 0.48 of it on black, where the gloss is 1.
+TEST(Principled, ClearcoatIsDrawnAsItReflects) {
+  for (const auto& [base, most] : {std::pair(0.02f, 0.13), {0.5f, 0.035}, {0.9f, 0.035}})
+    for (const float gloss : {0.0f, 0.5f, 0.9f, 1.0f})
+      for (const float theta : {0.0f, 0.6f, 1.0f}) {
+        Material m = material(MaterialKind::principled);
+        m.ior = 1.5f;
+        m.reflectance = base;
+        m.clearcoat = 1.0f;
+        m.clearcoat_gloss = gloss;
+        const Vec3 wo = direction(theta, 0);
+        EXPECT_LT(relative_variance(resolved({m}).bsdf, wo), most) << base << " " << gloss << " " << theta;
+      }
+}
+
 TEST(Principled, PlainCornersAreKnownModels) {
   Material m = material(MaterialKind::principled);
   m.ior = 1.5f;
