@@ -180,7 +180,7 @@ uint32_t add_light(Scene& scene, LightKind kind, const Slot& radiance) {
   light.radiance = radiance;
   light.direction = {0, -1, 0};
   light.to_world = kind == LightKind::spot || kind == LightKind::projector ? look_at({0, 0, 0}, {0, -1, 0}) : Mat4(1);
-  light.cos_cutoff = std::cos(40 * pi / 180), light.cos_beam = std::cos(30 * pi / 180);
+  light.cutoff = 40 * pi / 180, light.beam = 30 * pi / 180;
   return append(scene.lights, light);
 }
 

@@ -60,21 +60,30 @@ bool sample_environment_at(const Scene& scene, const Light& light, const Vec2& u
   return true;
 }
 
+// From the distance of the two unit vectors, or from the opposite one's: the cosine tells small angles apart badly.
+float angle_to_spot(const Light& light, const Vec3& w) {
+  const auto across = [](const Vec3& between) {
+    return 2 * std::asin(std::min(0.5f * std::sqrt(length2(between)), 1.0f));
+  };
+  return glm::dot(light.direction, w) > 0 ? across(w - light.direction) : pi - across(w + light.direction);
+}
+
 // Share of a spot's intensity in unit direction of travel w: linear in the angle between beam and cutoff.
 float spot_share(const Light& light, const Vec3& w) {
-  const float cosine = glm::dot(light.direction, w);
-  if (cosine >= light.cos_beam) return 1;
-  if (cosine <= light.cos_cutoff) return 0;
-  const float cutoff = std::acos(light.cos_cutoff), beam = std::acos(light.cos_beam);
-  return std::clamp((cutoff - std::acos(cosine)) / (cutoff - beam), 0.0f, 1.0f);
+  const float angle = angle_to_spot(light, w);
+  if (angle <= light.beam) return 1;
+  if (angle >= light.cutoff) return 0;
+  return (light.cutoff - angle) / (light.cutoff - light.beam);
 }
+// 1 - cos(cutoff)
+float spot_height(const Light& light) { return 2 * sqr(std::sin(0.5f * light.cutoff)); }
 
 // A texture on a spot covers the square around its cone, seen along the axis.
 Rgb spot_color(const Scene& scene, const Light& light, const Vec3& w) {
   if (!light.textured) return light.radiance.value;
   const Vec3 local = light.to_local * w;
-  if (!(local.z > 0) || !(light.cos_cutoff > 0)) return Rgb(0);
-  const float tangent = safe_sqrt(1 - sqr(light.cos_cutoff)) / light.cos_cutoff;
+  if (!(local.z > 0) || !(light.cutoff < pi / 2)) return Rgb(0);
+  const float tangent = std::tan(light.cutoff);
   Surface at;
   at.uv = Vec2(local) / (local.z * tangent) * 0.5f + 0.5f;
   return eval(scene, light.radiance, at);
@@ -173,7 +182,7 @@ bool sample_emission_delta(const Scene& scene, uint32_t id, const Vec2& u_direct
     out.direction = glm::normalize(Mat3(light.to_world) * local);
     out.pdf_direction = picture_pdf(light, local.z);
   } else {
-    const float height = 1 - light.cos_cutoff;
+    const float height = spot_height(light);
     if (!(height > 0)) return false;
     out.direction = make_frame(light.direction).to_world(to_cone(u_direction, height));
     out.pdf_direction = cone_pdf(height);
@@ -184,9 +193,9 @@ bool sample_emission_delta(const Scene& scene, uint32_t id, const Vec2& u_direct
 
 // Integral of a spot's share over directions.
 double spot_solid_angle(const Light& light) {
-  const double c = std::acos(double(light.cos_cutoff)), b = std::acos(std::max(light.cos_beam, light.cos_cutoff));
-  const double slope = c - b > 1e-4 ? (std::sin(c) - std::sin(b)) / (c - b) : std::cos((b + c) / 2);
-  return 2 * std::numbers::pi * (1 - slope);
+  const double middle = 0.5 * (double(light.cutoff) + light.beam), half = 0.5 * (double(light.cutoff) - light.beam);
+  const double slope = half > 1e-9 ? std::sin(half) / half : 1;
+  return 2 * std::numbers::pi * (1 - std::cos(middle) * slope);
 }
 
 double mean_luminance(const Scene& scene, const Slot& slot) { return std::max(luminance(mean(scene, slot)), 0.0f); }
@@ -250,7 +259,7 @@ EmissionPdf pdf_emission(const Scene& scene, const LightPoint& point, const Vec3
     case LightKind::point:
       return {1, sphere_pdf};
     case LightKind::spot:
-      return {1, glm::dot(light.direction, direction) > light.cos_cutoff ? cone_pdf(1 - light.cos_cutoff) : 0};
+      return {1, angle_to_spot(light, direction) < light.cutoff ? cone_pdf(spot_height(light)) : 0};
     case LightKind::projector: {
       Vec2 at;
       float cos;

@@ -225,7 +225,7 @@ void add_delta(Gatherer& g, uint32_t id, double watts) {
   b.low = b.high = light.position;
   b.axis = light.direction;
   if (light.kind == LightKind::point) b.cos_spread = -1;
-  if (light.kind == LightKind::spot) b.cos_reach = light.cos_cutoff;
+  if (light.kind == LightKind::spot) b.cos_reach = std::cos(light.cutoff);
   if (light.kind == LightKind::projector)
     b.cos_spread = 1 / std::sqrt(1 + glm::dot(light.plane, light.plane)) - 1e-4f, b.cos_reach = 0.99f;
   g.add(id, none, b, watts, false);

@@ -304,7 +304,7 @@ Scene open(LightKind kind) {
   light.position = {0.3f, 0.8f, 0.4f};
   light.direction = glm::normalize(Vec3(-0.3f, -1, -0.4f));
   light.to_world = look_at(light.position, light.position + light.direction);
-  light.cos_cutoff = 0.8f, light.cos_beam = 0.9f;
+  light.cutoff = std::acos(0.8f), light.beam = std::acos(0.9f);
   if (kind == LightKind::envmap) {
     std::vector<float> sky;
     for (int i = 0; i < 32 * 16; ++i)

@@ -76,7 +76,7 @@ Scene lit_by(LightKind kind, const Vec3& direction) {
   light.position = {0.3f, 0.8f, 0.4f};
   light.direction = glm::normalize(direction);
   light.to_world = look_at(light.position, light.position + light.direction);
-  light.cos_cutoff = std::cos(0.7f), light.cos_beam = std::cos(0.4f);
+  light.cutoff = 0.7f, light.beam = 0.4f;
   return finished(std::move(scene));
 }
 

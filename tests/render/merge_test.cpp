@@ -149,7 +149,7 @@ TEST(Merging, ManyGathersFindTheLightOfOne) {
   Light& spot = scene.lights[add_light(scene, LightKind::spot, Rgb(5))];
   spot.position = {0.5f, 0.2f, 0};
   spot.direction = glm::normalize(Vec3(-1.5f, 0.3f, 0.3f));
-  spot.cos_cutoff = std::cos(0.2f), spot.cos_beam = std::cos(0.15f);
+  spot.cutoff = 0.2f, spot.beam = 0.15f;
   add_quad(scene, {0, 0, 60}, {1, 0, 0}, {0, 1, 0}, 0);  // radii are bounded by the scene's
   finish(scene);
   RenderOptions o = statistical("photon");

@@ -190,7 +190,7 @@ TEST(Direct, PointSpotAndDirectional) {
 
   light.kind = LightKind::spot;
   light.direction = {0, 0, -1};
-  light.cos_cutoff = std::cos(0.6f), light.cos_beam = std::cos(0.2f);
+  light.cutoff = 0.6f, light.beam = 0.2f;
   const Scene spot = delta_scene(light);
   for (const float angle : {0.0f, 0.1f, 0.3f, 0.4f, 0.59f}) {
     ASSERT_TRUE(sample_direct(spot, 0, {3 * std::tan(angle), 0, 0}, {0.5f, 0.5f}, d)) << angle;
@@ -209,6 +209,35 @@ TEST(Direct, PointSpotAndDirectional) {
   EXPECT_TRUE(d.point.infinite && d.point.delta_direction);
   EXPECT_EQ(environment(sun, 0, d.wi), Rgb(0));
   EXPECT_TRUE(sun.infinite_lights.empty());
+}
+
+// However narrow: single precision tells cosines of small angles from 1 no more.
+TEST(Direct, NarrowSpot) {
+  for (const float degrees : {1.0f, 0.05f, 0.01f, 1e-3f}) {
+    Light light;
+    light.kind = LightKind::spot;
+    light.position = {0, 0, 1};
+    light.direction = {0, 0, -1};
+    light.cutoff = degrees * pi / 180, light.beam = 0.5f * light.cutoff;
+    const Scene scene = delta_scene(light);
+    DirectSample d;
+    for (const float part : {0.1f, 0.45f, 0.6f, 0.77f, 0.98f}) {
+      ASSERT_TRUE(sample_direct(scene, 0, {std::tan(part * light.cutoff), 0, 0}, {0.5f, 0.5f}, d)) << degrees;
+      EXPECT_NEAR(d.radiance.x, std::min(2 - 2 * part, 1.0f), 0.01) << degrees << " " << part;
+    }
+    EXPECT_FALSE(sample_direct(scene, 0, {std::tan(1.02f * light.cutoff), 0, 0}, {0.5f, 0.5f}, d)) << degrees;
+    EmissionSample e;
+    double mean = 0;
+    constexpr int n = 256;
+    for (int i = 0; i < n; ++i) {
+      if (!sample_emission(scene, 0, Vec2(0), {(float(i) + 0.5f) / n, 0.3f}, e)) continue;
+      mean += e.radiance.x / e.pdf_direction / n;
+      EXPECT_EQ(pdf_emission(scene, e.point, e.direction).direction, e.pdf_direction) << degrees;
+    }
+    const double c = light.cutoff, b = light.beam, expected = pi * (c * c + c * b + b * b) / 3;
+    EXPECT_NEAR(mean, expected, 0.01 * expected) << degrees;
+    EXPECT_NEAR(power(scene, 0), expected, 1e-3 * expected) << degrees;
+  }
 }
 
 // Dark, flat and singular lights give nothing rather than NaN.

@@ -25,7 +25,7 @@ std::vector<LitScene> delta_scenes() {
       light.to_world = glm::rotate(Mat4(1), 1.0f, glm::normalize(Vec3(1, 2, 3)));
       light.plane = {1.5f, 0.4f};
     }
-    light.cos_cutoff = std::cos(0.7f), light.cos_beam = std::cos(0.3f);
+    light.cutoff = 0.7f, light.beam = 0.3f;
     all.push_back({names[all.size()], {}});
     kit::add_mesh(all.back().scene, kit::rectangle(kit::placed(0, Vec3(2), {1, 2, 3})));
     kit::add_light(all.back().scene, light);

@@ -42,8 +42,8 @@ struct Light {
   Vec3 position{0};             ///< point, spot, projector
   Vec3 direction{0, 0, 1};      ///< spot, directional, sun: where the light travels to, unit
   float cone = 0;               ///< sun: 1 - cos of half the angle that it is seen under
-  float cos_cutoff = 0;         ///< spot: nothing outside
-  float cos_beam = 1;           ///< spot: full intensity inside; between the two it falls linearly with the angle
+  float cutoff = pi / 2;        ///< spot: nothing outside this angle to its direction, at most pi
+  float beam = 0;               ///< spot: full intensity inside; between the two it falls linearly with the angle
   Vec2 plane{1, 1};             ///< projector: half extents of its picture at distance 1, seen as by a Camera; the
                                 ///< intensity rises with cos^-3 from the axis, so that a screen across it is lit evenly
   bool textured = false;        ///< radiance has a texture; made by finish

@@ -114,8 +114,8 @@ void spot(Params& p) {
   const double cutoff = number(p, "cutoff_angle", 20), beam = number(p, "beam_width", cutoff * 3 / 4);
   if (!(cutoff > 0 && cutoff <= 180)) fail(p.loader, p.node, "cutoff_angle should be above 0, at most 180 degrees");
   if (!(beam >= 0 && beam <= cutoff)) fail(p.loader, p.node, "beam_width should be from 0 to cutoff_angle");
-  light.cos_cutoff = float(std::cos(glm::radians(cutoff)));
-  light.cos_beam = float(std::cos(glm::radians(beam)));
+  light.cutoff = std::min(float(glm::radians(cutoff)), pi);
+  light.beam = float(glm::radians(beam));
   project_texture(p, cutoff, light);
   const DMat4 m = regular_to_world(p);
   light.to_world = orientation(m);

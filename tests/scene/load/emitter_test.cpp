@@ -91,14 +91,14 @@ TEST(Emitters, Spot) {
   EXPECT_EQ(l.kind, LightKind::spot);
   EXPECT_RGB(l.position, 1, 2, 3, 1e-6);
   EXPECT_RGB(l.direction, 1, 0, 0, 1e-6);
-  EXPECT_NEAR(l.cos_cutoff, 0.5, 1e-6);
-  EXPECT_NEAR(l.cos_beam, std::cos(pi / 4), 1e-6);
+  EXPECT_FLOAT_EQ(l.cutoff, pi / 3);
+  EXPECT_FLOAT_EQ(l.beam, pi / 4);
   l = light("spot", "<float name='beam_width' value='0'/>");
-  EXPECT_NEAR(l.cos_cutoff, std::cos(20 * pi / 180), 1e-6);
-  EXPECT_EQ(l.cos_beam, 1);
+  EXPECT_FLOAT_EQ(l.cutoff, pi / 9);
+  EXPECT_EQ(l.beam, 0);
   EXPECT_SAYS(error_of(emitter("spot", "<float name='cutoff_angle' value='0'/>")), "cutoff_angle");
   EXPECT_SAYS(error_of(emitter("spot", "<float name='cutoff_angle' value='181'/>")), "cutoff_angle");
-  EXPECT_EQ(light("spot", "<float name='cutoff_angle' value='180'/>").cos_cutoff, -1);  // all around
+  EXPECT_EQ(light("spot", "<float name='cutoff_angle' value='180'/>").cutoff, pi);  // all around
   EXPECT_SAYS(error_of(emitter("spot", "<float name='beam_width' value='30'/>")), "beam_width");
   for (const auto& [type, slot] : {std::pair("spot", "texture"), std::pair("projector", "irradiance")})
     EXPECT_SAYS(error_of(emitter(type, "<texture name='" + std::string(slot) +
