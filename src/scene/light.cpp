@@ -200,6 +200,25 @@ double spot_solid_angle(const Light& light) {
 
 double mean_luminance(const Scene& scene, const Slot& slot) { return std::max(luminance(mean(scene, slot)), 0.0f); }
 
+// Of a textured lamp, by points on it: its (u, v) may show a part of the texture alone. A little of what the whole
+// texture would make of it remains, for what shines between the points.
+double area_power(const Scene& scene, const Light& light) {
+  const double evenly = std::numbers::pi * area(scene, light.shape) * mean_luminance(scene, light.radiance);
+  if (!light.textured) return evenly;
+  const Shape& shape = scene.shapes[light.shape];
+  const Mesh* mesh = shape.kind == ShapeKind::mesh ? &scene.meshes[shape.mesh] : nullptr;
+  const size_t n = std::clamp<size_t>(mesh ? 4 * mesh->triangles.size() : 0, 256, 1 << 16);
+  double sum = 0;
+  for (size_t i = 0; i < n; ++i) {
+    float pdf;
+    const double turn = double(i) * 0.6180339887498949;
+    const Surface at = sample_area(scene, light.shape, {(float(i) + 0.5f) / float(n), turn - std::floor(turn)}, pdf);
+    if (pdf > 0) sum += std::max(luminance(radiance_at(scene, light, at)), 0.0f) / double(pdf);
+  }
+  const double most = std::numbers::pi * area(scene, light.shape) * luminance(maximum(scene, light.radiance, mesh));
+  return std::max({std::numbers::pi * sum / double(n), 1e-3 * evenly, most < infinity ? 1e-6 * most : 0});
+}
+
 }  // namespace
 
 bool sample_direct(const Scene& scene, uint32_t id, const Vec3& x, const Vec2& u, DirectSample& out) {
@@ -297,7 +316,7 @@ float power(const Scene& scene, uint32_t id) {
   double watts = 0;
   switch (light.kind) {
     case LightKind::area:
-      watts = std::numbers::pi * area(scene, light.shape) * mean_luminance(scene, light.radiance);
+      watts = area_power(scene, light);
       break;
     case LightKind::constant:
       watts = sphere * disk * luminance(light.radiance.value);
