@@ -112,8 +112,27 @@ bool sample_plane(const Rectangle& r, const Vec3& x, const Vec2& u, DirectSample
   return d2 > 0 && out.pdf < infinity;
 }
 
+// The part of a cylinder that faces a point: where in u it is, from 0 to 1 around.
+struct Arc {
+  double middle = 0.5, width = 1;
+};
+
+// All of it where the point is not beside it, or it shines inwards. Whether a point faces another one does not depend
+// on how the unit cylinder is stretched.
+Arc arc_of(const Shape& shape, const Vec3& x) {
+  if (shape.kind != ShapeKind::cylinder || shape.flip) return {};
+  const glm::dvec3 at(glm::inverse(glm::dmat4(shape.to_world)) * glm::dvec4(x, 1));
+  const double distance = std::hypot(at.x, at.y);
+  if (!(distance > 1 + 1e-6 && distance < double(infinity))) return {};
+  return {std::atan2(at.y, at.x) / (2 * std::numbers::pi), std::acos(1 / distance) / std::numbers::pi};
+}
+
 bool sample_by_area(const Scene& scene, const Light& light, const Vec3& x, const Vec2& u, ShapeSample& out) {
-  out.at = sample_light_area(scene, light, u, out.pdf);
+  const Arc arc = arc_of(scene.shapes[light.shape], x);
+  const double turn = arc.middle + arc.width * (double(u.x) - 0.5);
+  const Vec2 within = arc.width < 1 ? Vec2(turn - std::floor(turn), u.y) : u;
+  out.at = sample_light_area(scene, light, within, out.pdf);
+  out.pdf /= float(arc.width);
   const Vec3 between = out.at.p - x;
   const float d2 = length2(between);
   if (!(d2 > 0)) return false;
@@ -151,7 +170,8 @@ float shape_pdf(const Scene& scene, const Light& light, const LightPoint& point,
   const Shape& shape = scene.shapes[light.shape];
   Cone cone;
   if (shape.kind == ShapeKind::sphere && cone_of(shape, x, cone)) return cone_pdf(cone.height);
-  const float pdf = light_area_pdf(scene, light, point) * length2(point.p - x) / cosine;
+  const float by_area = light_area_pdf(scene, light, point) / float(arc_of(shape, x).width);
+  const float pdf = by_area * length2(point.p - x) / cosine;
   return pdf < infinity ? pdf : 0;
 }
 

@@ -18,6 +18,7 @@ void expect_area_chi_square(const LitScene& lit, const Vec3& x, uint64_t seed) {
   kit::ChiOptions o;
   o.samples = 50'000;
   o.rows = 8, o.columns = 16;
+  if (scene.shapes[0].kind == ShapeKind::cylinder) o.rows = 4, o.columns = 64;  // what faces x ends at columns
   o.seed = seed;
   const auto r = kit::chi_square_square(
       [&](const Vec2& u) -> std::optional<Vec2> {
@@ -209,6 +210,22 @@ TEST(Direct, PointSpotAndDirectional) {
   EXPECT_TRUE(d.point.infinite && d.point.delta_direction);
   EXPECT_EQ(environment(sun, 0, d.wi), Rgb(0));
   EXPECT_TRUE(sun.infinite_lights.empty());
+}
+
+// Of a cylinder a point beside it sees less than half: no sample is of the rest.
+TEST(Direct, CylindersAreSampledWhereTheyFaceThePoint) {
+  const LitScene lit = kit::area_scene("cylinder", ShapeKind::cylinder, placed(0.4f, {0.5f, 1, 2}, {1, 2, 3}));
+  const Vec3 axis = glm::normalize(Vec3(lit.scene.shapes[0].to_world[2]));
+  const Vec3 across = Vec3(lit.scene.shapes[0].to_world[0]), end = Vec3(lit.scene.shapes[0].to_world[3]);
+  for (const float distance : {1.001f, 1.1f, 2.0f, 30.0f})
+    for (const float along : {-3.0f, 0.5f, 10.0f}) {
+      int missed = 0;
+      for (uint32_t i = 0; i < 1000; ++i) {
+        DirectSample d;
+        missed += !sample_direct(lit.scene, 0, end + across * distance + axis * along, kit::random2(i, 3), d);
+      }
+      EXPECT_LE(missed, 2) << distance << " " << along;
+    }
 }
 
 // However narrow: single precision tells cosines of small angles from 1 no more.

@@ -84,7 +84,7 @@ struct EmissionSample {
 };
 
 /// One light seen from x. u in [0,1)^2. False where this sample gives x nothing. Spheres seen from outside are sampled
-/// by the cone that they fill, near rectangles by solid angle, other shapes by area.
+/// by the cone that they fill, near rectangles by solid angle, other shapes by area, cylinders that of what faces x.
 bool sample_direct(const Scene& scene, uint32_t light, const Vec3& x, const Vec2& u, DirectSample& out);
 /// A piece of a light (lighttree.h) seen from x, the same way; pdf is without the choice of the piece. Triangles are
 /// sampled by area.
