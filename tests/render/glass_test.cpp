@@ -15,13 +15,6 @@ uint32_t add_pane_material(Scene& scene) {
   return add_material(scene, m);
 }
 
-Fields learned(const Scene& scene) {
-  const Accel accel(scene);
-  RenderOptions options = statistical("guided-bdpt");
-  options.spp = 6;
-  return rendered(scene, accel, options).learning.fields;
-}
-
 // What a field's vertices receive at once, in the mean over its visits.
 double direct(const Field& field) {
   double sum = 0, visits = 0;

@@ -38,6 +38,13 @@ RenderState rendered(const Scene& scene, const Accel& accel, const RenderOptions
   return state;
 }
 
+Fields learned(const Scene& scene) {
+  const Accel accel(scene);
+  RenderOptions options = statistical("guided-bdpt");
+  options.spp = 6;
+  return rendered(scene, accel, options).learning.fields;
+}
+
 kit::Estimate measure(const Scene& scene, const RenderOptions& options, const Repeats& plan) {
   const Accel accel(scene);
   RenderOptions o = options;

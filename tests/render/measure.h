@@ -22,6 +22,8 @@ RenderOptions statistical(const std::string& integrator, int max_depth = -1);
 /// scene, which are the same for all; without any they are found.
 RenderState rendered(const Scene& scene, const Accel& accel, const RenderOptions& options,
                      const CellTable* walls = nullptr);
+/// What six passes of guided-bdpt learn of the scene.
+Fields learned(const Scene& scene);
 kit::Estimate measure(const Scene& scene, const RenderOptions& options, const Repeats& plan = {});
 /// The raw image of every strategy (s, t).
 std::map<std::pair<int, int>, kit::Estimate> measure_techniques(const Scene& scene, RenderOptions options,
