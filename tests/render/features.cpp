@@ -350,7 +350,7 @@ const Feature all[] = {
     {"beckmann", [] { return with_rough_sphere(MaterialKind::roughconductor, Microfacet::beckmann, 0.1f, 0.4f); }},
     {"conductor", [] { return with_sphere(of_kind(MaterialKind::conductor)); }, "pb"},
     {"glass", [] { return with_sphere(glass); }, "pb"},
-    {"pane", [] { return with_sphere(of_kind(MaterialKind::thindielectric)); }, "pb"},
+    {"pane", [] { return with_sphere(of_kind(MaterialKind::thindielectric)); }, "pb", -1, Heuristic::power, 2},
     {"rough_glass", [] { return with_rough_sphere(MaterialKind::roughdielectric, Microfacet::ggx, 0.3f, 0.3f); }},
     {"rough_glass_beckmann",
      [] { return with_rough_sphere(MaterialKind::roughdielectric, Microfacet::beckmann, 0.2f, 0.4f); }},
