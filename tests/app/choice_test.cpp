@@ -3,6 +3,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "ajar/core/files.h"
+#include "ajar/film/picture.h"
+#include "ajar/scene/load.h"
+#include "app/render_options.h"
 #include "outputs_stage.h"
 
 namespace ajar {
