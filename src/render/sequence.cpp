@@ -56,6 +56,7 @@ std::optional<Fields> teach(const Scene& scene, const Accel& accel, const Render
     StoredFields carried{doubt(before->fields, moved, sequence.doubt, learning), {}, 0};
     fit_lights(scene.light_tree, learning, carried.fields);
     for (Cell& c : carried.fields.cells) c.seen *= sequence.forget;  // or cells divide until the memory is full
+    state.learning.train = 0;  // of an image; lessons that time cut short go on from where they are
     go_on_from(std::move(carried), learning, state.learning, state.film);
     teaching.learn.forget = sequence.forget, teaching.learn.steady = sequence.coherence.numbers;
     if (!give_lessons(scene, accel, teaching, 1, sequence.teach, state, monitor)) return {};
