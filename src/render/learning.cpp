@@ -19,6 +19,9 @@ uint32_t rarity(const Learning& l) { return rare_records << std::min(l.fields.ge
 // Passes from one lesson to the next.
 uint32_t interval(const Learning& l) { return is_young(l) ? l.lesson : rarity(l); }
 
+// For a lesson of fields that know something.
+constexpr size_t enough_pixels = 16384;
+
 // Of how many pixels one is traced in the first two passes and in the other blind ones, and how many of the paths of
 // those that follow are recorded: so many pixels that enough are left, as far as that is possible.
 struct YoungShares {
@@ -28,7 +31,7 @@ struct YoungShares {
 YoungShares young_shares(size_t pixels) {
   const auto one_in = [&](size_t least, size_t most) { return uint32_t(std::clamp<size_t>(pixels / least, 1, most)); };
   const uint32_t first = one_in(4096, 16);
-  return {first, first == 1 ? 1 : std::max(first / 2, 2u), one_in(16384, rare_records)};
+  return {first, first == 1 ? 1 : std::max(first / 2, 2u), one_in(enough_pixels, rare_records)};
 }
 
 }  // namespace
@@ -71,6 +74,7 @@ void end_training(Learning& l) {
 }
 
 uint32_t traced_one_in(const Learning& l, const Film& film) {
+  if (l.of_film) return uint32_t(std::clamp<size_t>(film.pixels() / enough_pixels, 1, 16));
   if (l.train > 0 || l.lesson > 1 || l.fields.generation >= blind_generations) return 1;
   const YoungShares shares = young_shares(film.pixels());
   return l.fields.generation < blind_generations / 2 ? shares.first : shares.later;

@@ -20,7 +20,7 @@ bool give_lessons(const Scene& scene, const Accel& accel, const RenderOptions& o
                   uint32_t passes, RenderState& state, const Monitor& monitor) {
   Learning& l = state.learning;
   const uint32_t first = l.fields.generation, least = std::max(first + 1, blind_generations);
-  l.lesson = passes;
+  l.lesson = passes, l.of_film = true;
   l.train = first + lessons;
   RenderOptions endless = options;
   endless.spp = 0, endless.seconds = 0, endless.cpu_seconds = 0, endless.noise = 0,

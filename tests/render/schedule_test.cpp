@@ -184,6 +184,23 @@ TEST(Schedule, LargeImagesAreTaughtByASmallShareOfTheirPixels) {
 }
 
 // Half of the light subpaths there are may be fewer than what is to be recorded; where it is not, sides are alike.
+// A lesson of a film is the scene's affair, not that of the number of pixels.
+TEST(Schedule, FilmsAreTaughtByAsManyPathsHoweverLarge) {
+  const auto one_in = [](int width, int height) {
+    Scene scene = stage(8);
+    Camera& c = scene.camera;
+    c.width = c.crop_width = width, c.height = c.crop_height = height;
+    finish(scene);
+    const Film film = make_film(c, scene.filter, true);
+    Learning learning = start_learning(scene, film, {});
+    learning.train = 16, learning.of_film = true;
+    return traced_one_in(learning, film);
+  };
+  EXPECT_EQ(one_in(96, 54), 1u);
+  EXPECT_EQ(one_in(480, 270), 7u);
+  EXPECT_EQ(one_in(1280, 720), 16u);
+}
+
 TEST(Schedule, FieldsKnowHowManyTaughtThem) {
   Scene scene = stage(8);
   const auto paths = [&](int width, int height, uint32_t generation, float rate) {

@@ -13,10 +13,11 @@ struct Learning {
   Fields fields;
   Training training;
   Sightings sightings;
-  uint32_t passes = 0;  ///< recorded since
-  uint32_t train = 0;   ///< generation from which the fields are frozen, 0: they learn all along; LearnOptions::train
-  uint32_t lesson = 1;  ///< passes of a lesson before that, and of the first lessons where they learn all along
-  uint32_t first = 0;   ///< number of the render's first pass; even; not 0 where it goes on from stored fields
+  uint32_t passes = 0;   ///< recorded since
+  uint32_t train = 0;    ///< generation from which the fields are frozen, 0: they learn all along; LearnOptions::train
+  uint32_t lesson = 1;   ///< passes of a lesson before that, and of the first lessons where they learn all along
+  bool of_film = false;  ///< in a lesson of a film, which needs so many pixels as the scene asks for, not the image
+  uint32_t first = 0;    ///< number of the render's first pass; even; not 0 where it goes on from stored fields
 };
 
 /// After each of the first passes, young_generations of them, the fields are learned; the next lesson is after
