@@ -62,10 +62,9 @@ double mean_of(const Picture& image);
 std::optional<Carried> find_carried(const std::string& folder, const std::string& key, int last);
 
 /// The figures of all frames of the animation that are there. reference: empty for none; of what is missing there no
-/// error is known, nor
-/// flicker of steps between frames of two sizes. Pixels are read where they are compared alone, or where a frame's file
-/// does not tell its mean. key: with which the names of its frames begin, in their files; empty: whatever is there
-/// counts.
+/// error is known, nor flicker of steps between frames of two sizes. Pixels are read where they are compared alone, or
+/// where a frame's file does not tell its mean. key: with which the names of its frames begin, in their files; empty:
+/// whatever is there counts.
 std::vector<FrameFigures> measure(const FramePattern& pattern, const Timeline& timeline,
                                   const std::optional<FramePattern>& reference, const std::string& key = {});
 

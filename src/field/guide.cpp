@@ -48,14 +48,13 @@ float breadth(const Lobe& lobe) {
     case LobeKind::plastic:
       return 1 - boundary(lobe.plastic.share, lobe.plastic.ior);
     case LobeKind::roughplastic:
-      return 1 - boundary(lobe.roughplastic.share, lobe.roughplastic.ior) *
-                     narrow(std::min(lobe.roughplastic.facets.alpha_u, lobe.roughplastic.facets.alpha_v));
+      return 1 - boundary(lobe.roughplastic.share, lobe.roughplastic.ior) * narrow(narrower(lobe.roughplastic.facets));
     case LobeKind::roughconductor:
-      return 1 - narrow(std::min(lobe.roughconductor.facets.alpha_u, lobe.roughconductor.facets.alpha_v));
+      return 1 - narrow(narrower(lobe.roughconductor.facets));
     case LobeKind::phong:
       return 1 - lobe.phong.share * narrow(std::sqrt(2 / (lobe.phong.exponent + 2)));
     case LobeKind::ward:
-      return 1 - lobe.ward.share * narrow(std::min(lobe.ward.facets.alpha_u, lobe.ward.facets.alpha_v));
+      return 1 - lobe.ward.share * narrow(narrower(lobe.ward.facets));
     case LobeKind::principled:
       return breadth(lobe.principled);
     default:

@@ -28,8 +28,8 @@ float pixel_density(const Camera& c) { return float(c.width) * float(c.height) /
 
 // A step dq in the plane of depth 1 turns the ray q = (qx, qy, 1) by |M|/|M q|^3 dq in world solid angle, where M is
 // the linear part of to_world; |M q| is the distance over the depth. So pixels per area perpendicular to the ray are
-// density / (|M| / |M q|^3) / distance^2. (No cube of the depth: it would leave the range of
-// floats from 7e12 and below 1e-13.)
+// density / (|M| / |M q|^3) / distance^2. (No cube of the depth: it would leave the range of floats from 7e12 and below
+// 1e-13.)
 float perspective_factor(const Camera& c, float distance, float depth) {
   return depth > 0 ? pixel_density(c) / volume(c.to_world) * (distance / depth) / depth / depth : 0;
 }

@@ -35,8 +35,6 @@ BsdfEval eval_lobe(const Bsdf& bsdf, int i, const Vec3& wo, const Vec3& wi, Mode
   return e;
 }
 
-float narrower(const Facets& f) { return std::min(f.alpha_u, f.alpha_v); }
-
 // Roughness of the narrower of what a lobe consists of.
 float roughness(const Lobe& lobe) {
   switch (lobe.kind) {

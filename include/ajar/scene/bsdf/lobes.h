@@ -3,6 +3,8 @@
 // said there).
 #pragma once
 
+#include <algorithm>
+
 #include "ajar/scene/material.h"
 
 namespace ajar {
@@ -12,6 +14,7 @@ struct Facets {
   float alpha_u, alpha_v;  ///< at least min_alpha
   Microfacet kind;
 };
+inline float narrower(const Facets& f) { return std::min(f.alpha_u, f.alpha_v); }
 
 /// Roughness below this is raised to it: float half vectors resolve no finer peak, and images do not show one.
 inline constexpr float min_alpha = 1e-4f;
