@@ -108,10 +108,10 @@ void finish(LightStore& store, std::span<const float> near) {
 }
 
 void append(LightStore& store, const LightStore& more) {
-  const uint32_t shift = uint32_t(store.vertices.size());
-  store.vertices.insert(store.vertices.end(), more.vertices.begin(), more.vertices.end());
   for (LightStore::Place at : more.places) {
-    at.vertex += shift, at.path += store.paths;
+    const Vertex& v = more.vertex(at);
+    at.vertex = uint32_t(store.vertices.size()), at.path += store.paths;
+    store.vertices.push_back(v);
     store.places.push_back(at);
   }
   store.paths += more.paths;

@@ -70,9 +70,9 @@ void trace_lights(const Job& job, Sampler sampler, Scratch& scratch, Part& out) 
       out.may_light.push_back(can_light(*job.scene, surface, light[light.n - 1].guide));
     }
   }
-  const size_t before = out.store.places.size();
-  add(out.store, light, walk.first_share);
-  std::vector<LightStore::Place>& places = out.store.places;
+  const size_t before = scratch.traced.places.size();
+  add(scratch.traced, light, walk.first_share);
+  std::vector<LightStore::Place>& places = scratch.traced.places;
   const auto is_none = [&](const LightStore::Place& at) { return !out.may_light[size_t(at.s)] && !at.only_joined; };
   places.erase(std::remove_if(places.begin() + ptrdiff_t(before), places.end(), is_none), places.end());
 }
@@ -81,17 +81,6 @@ void trace_lights(const Job& job, Sampler sampler, Scratch& scratch, Part& out) 
 constexpr uint32_t kept_lights = 1024;
 
 constexpr uint32_t grain = 16;  // light subpaths of a part
-
-std::vector<Part> trace_parts(const Job& job, uint64_t stream, uint32_t pass, std::vector<Scratch>& scratches) {
-  const uint32_t paths = job.vpls->paths;
-  std::vector<Part> parts((paths + grain - 1) / grain);
-  parallel_for(parts.size(), [&](size_t part) {
-    const uint32_t from = uint32_t(part) * grain, to = std::min(paths, from + grain);
-    for (uint32_t i = from; i < to; ++i)
-      trace_lights(job, numbers_of(job, stream, pass, i), scratches[thread_slot()], parts[part]);
-  });
-  return parts;
-}
 
 // What arrives there, whatever is made of it.
 double flux_at(const LightStore& store, const LightStore::Place& at) {
@@ -116,6 +105,21 @@ void select_lights(const Job& job, uint32_t pass, uint32_t number, LightStore& s
     kept.push_back(at);
   }
   store.places = std::move(kept);
+}
+
+// Traces the light subpaths, and copies of their vertices those alone that are kept.
+std::vector<Part> trace_parts(const Job& job, uint64_t stream, uint32_t pass, std::vector<Scratch>& scratches) {
+  const uint32_t paths = job.vpls->paths;
+  std::vector<Part> parts((paths + grain - 1) / grain);
+  parallel_for(parts.size(), [&](size_t part) {
+    Scratch& scratch = scratches[thread_slot()];
+    clear(scratch.traced);
+    const uint32_t from = uint32_t(part) * grain, to = std::min(paths, from + grain);
+    for (uint32_t i = from; i < to; ++i) trace_lights(job, numbers_of(job, stream, pass, i), scratch, parts[part]);
+    if (job.vpls->least > 0) select_lights(job, pass, uint32_t(part), scratch.traced);
+    append(parts[part].store, scratch.traced);
+  });
+  return parts;
 }
 
 void put_in_order(const Scene& scene, LightStore& store) {
@@ -157,15 +161,14 @@ uint32_t chunk_of_splat(const Film& film, uint64_t key, size_t number) {
 // Traces the light subpaths of a pass and keeps its lights.
 void trace_vpls(const Job& job, const Film& film, uint32_t pass, std::vector<Scratch>& scratches, Vpls& vpls) {
   constexpr uint64_t stream = 0x76706c;
-  std::vector<Part> parts = trace_parts(job, stream, pass, scratches);
+  const std::vector<Part> parts = trace_parts(job, stream, pass, scratches);
   clear(vpls.store);
   for (std::vector<Splat>& list : vpls.splats) list.clear();
   size_t splats = 0;
   const uint64_t key = hash(hash(job.seed, 0x5b1a7), pass);
-  for (uint32_t i = 0; i < parts.size(); ++i) {
-    if (vpls.least > 0) select_lights(job, pass, i, parts[i].store);
-    append(vpls.store, parts[i].store);
-    for (const Splat& s : parts[i].splats) vpls.splats[chunk_of_splat(film, key, splats++)].push_back(s);
+  for (const Part& part : parts) {
+    append(vpls.store, part.store);
+    for (const Splat& s : part.splats) vpls.splats[chunk_of_splat(film, key, splats++)].push_back(s);
   }
   put_in_order(*job.scene, vpls.store);
   std::vector<float> near;
