@@ -45,14 +45,6 @@ Sampler numbers_of(const Job& job, uint64_t stream, uint32_t pass, uint32_t path
   return make_sampler(job.sampler, job.seed, Side::light, stream, point);
 }
 
-// Share of next-event estimation (direct_share) as camera subpaths see it, which know no fields.
-double unguided_share(const Scene& scene, const Subpath& light, const Walk& walk) {
-  Vertex x = light[1];
-  x.guide.fields = nullptr, x.guide.cell = none;
-  return direct_share(scene, x, light[0].point, -walk.d, x.distance2,
-                      {walk.start.pdf_position, walk.start.pdf_direction});
-}
-
 void trace_lights(const Job& job, Sampler sampler, Scratch& scratch, Part& out) {
   Subpath& light = scratch.light;
   Walk walk;
@@ -65,7 +57,6 @@ void trace_lights(const Job& job, Sampler sampler, Scratch& scratch, Part& out) 
       if (light.n > 1 && !scatter(job.walk, sampler, light, walk)) break;
       ++scratch.counters.light_rays;
       if (!step(*job.scene, *job.accel, job.walk, light, walk, surface)) break;
-      if (light.n == 2) walk.first_share = unguided_share(*job.scene, light, walk);
       join_lens(job, sampler, walk.first_share, scratch, out.splats);
       out.may_light.push_back(can_light(*job.scene, surface, light[light.n - 1].guide));
     }

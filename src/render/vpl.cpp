@@ -93,6 +93,14 @@ void guide_way_back(const Job& job, const Surface& surface, Subpath& camera) {
   guide.mix_other = guided.mix_other, guide.back = guided.back;
 }
 
+// Camera subpaths are not guided, but ask the fields which lamps to look for (V3) and which regions see each other:
+// both go by the cell alone.
+void find_cell(const Job& job, Vertex& v) {
+  if (!job.guided || !connectable(v.guide)) return;
+  v.guide.fields = job.walk.fields;
+  v.guide.cell = find(v.guide.fields->table, v.p, glm::dot(v.ng, v.guide.wo) < 0 ? -v.ng : v.ng).cell;
+}
+
 void join_lights(Gathering& work, const Surface& surface) {
   const Job& job = work.job;
   const Subpath& camera = work.scratch.camera;
@@ -124,12 +132,6 @@ bool is_seen_from_lens(const Subpath& camera) {
   return true;
 }
 
-// Camera subpaths read no fields: the one thing that they need of them is asked for here.
-uint32_t region_at(const Fields& fields, const Vertex& x) {
-  const uint32_t cell = find(fields.table, x.p, glm::dot(x.ng, x.guide.wo) < 0 ? -x.ng : x.ng).cell;
-  return cell == none ? no_region : fields.cells[cell].region;
-}
-
 void join_vpls(Gathering& work) {
   const Job& job = work.job;
   Scratch& scratch = work.scratch;
@@ -138,7 +140,7 @@ void join_vpls(Gathering& work) {
   const Vertex& x = camera[camera.n - 1];
   Visibility* const visibility = !job.guided && is_seen_from_lens(camera) ? &scratch.visibility : nullptr;
   Prospect known{visibility};
-  if (job.guided) known.views = &job.walk.fields->views, known.region = region_at(*job.walk.fields, x);
+  if (job.guided) known.views = &job.walk.fields->views, known.region = region_of(x.guide);
   expect_all(store, x, job.walk.max_edges + 1 - camera.n, known, scratch.expected);
   const int joins = camera.n > 2 ? job.vpls->inner_joins : job.vpls->joins;
   const uint32_t key = uint32_t(work.sample.sampler.next1() * 0x1p32f);
@@ -182,6 +184,7 @@ void walk_on(Gathering& work, Walk& walk) {
       return;
     }
     guide_way_back(job, surface, camera);
+    find_cell(job, camera[camera.n - 1]);
     join_lights(work, surface);
     if (camera.n == 2 && is_clear(camera[1])) return;
     walked = is_walked(work, surface);

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "ajar/core/error.h"
 #include "frames.h"
 #include "kit/stage.h"
@@ -74,9 +76,8 @@ TEST(Vpl, NarrowLobesKeepTheirEnergy) {
   }
 }
 
-// All that the lens sees is a floor that is lit by way of a wall and a mirror: splats, guided to the mirror, and walks
-// find it, and must agree on each other's densities.
-TEST(Vpl, CausticsOfGuidedLightKeepTheirEnergy) {
+// All that the lens sees is a floor that is lit by way of a wall and a mirror.
+Scene lit_by_way_of_a_mirror() {
   Scene scene;
   scene.filter = make_filter(FilterKind::box);
   set_camera(scene, {0.4f, 1.5f, 1.5f}, {0.4f, 0, 0}, 14, 40, 40);
@@ -89,10 +90,41 @@ TEST(Vpl, CausticsOfGuidedLightKeepTheirEnergy) {
   add_quad(scene, {-0.1f, -0.1f, -0.6f}, {0, 0, 1.2f}, {0, 0.55f, 0}, black);  // hides the one from the other
   const uint32_t lamp = add_quad(scene, {-0.7f, 0.7f, 0.1f}, {0, 0, -0.2f}, {0, -0.1f, 0}, black);
   add_area_light(scene, lamp, Rgb(50));
+  return scene;
+}
+
+// Lamps brighter than the one that lights the wall, which face it too, with a screen before them.
+void add_hidden_lamps(Scene& scene) {
+  const uint32_t black = add_diffuse(scene, Rgb(0));
+  for (int i = 0; i < 6; ++i) {
+    const float y = 0.9f + 0.1f * float(i);
+    add_area_light(scene, add_quad(scene, {-0.6f, y, 0.1f}, {0, 0, -0.2f}, {0, -0.05f, 0}, black), Rgb(100));
+  }
+  add_quad(scene, {-0.61f, 0.8f, -0.3f}, {0, 0, 0.6f}, {0, 0.8f, 0}, black);
+}
+
+// Splats, guided to the mirror, and walks find it, and must agree on each other's densities.
+TEST(Vpl, CausticsOfGuidedLightKeepTheirEnergy) {
+  Scene scene = lit_by_way_of_a_mirror();
   finish(scene);
   const double right = mean(measure(scene, statistical("path"), {.batches = 4, .passes = 512, .seed = 3}));
   const double found = mean(measure(scene, statistical("vpl"), {.batches = 8, .passes = 64, .seed = 3}));
   EXPECT_NEAR(found / right, 1, 0.04);
+}
+
+// The wall is lit by one lamp, and six brighter ones promise as much.
+TEST(Vpl, CameraSubpathsLookForLampsThatWereSeen) {
+  Scene scene = lit_by_way_of_a_mirror();
+  set_camera(scene, {-0.4f, 0.5f, 0}, {-1, 0.5f, 0}, 30, 16, 16);  // at the wall
+  add_hidden_lamps(scene);
+  finish(scene);
+  RenderOptions options = statistical("vpl", 2);
+  const auto noise = [&](bool learns) {
+    options.learn.lights = learns;
+    const Estimate e = measure(scene, options, {.batches = 8, .passes = 8, .seed = 5});
+    return std::accumulate(e.variance.begin(), e.variance.end(), 0.0);
+  };
+  EXPECT_LT(noise(true), 0.5 * noise(false));
 }
 
 TEST(Sequence, ImagesNeverDrawTheNumbersThatTaught) {
