@@ -191,13 +191,6 @@ bool sample_emission_delta(const Scene& scene, uint32_t id, const Vec2& u_direct
   return !is_black(out.radiance);
 }
 
-// Integral of a spot's share over directions.
-double spot_solid_angle(const Light& light) {
-  const double middle = 0.5 * (double(light.cutoff) + light.beam), half = 0.5 * (double(light.cutoff) - light.beam);
-  const double slope = half > 1e-9 ? std::sin(half) / half : 1;
-  return 2 * std::numbers::pi * (1 - std::cos(middle) * slope);
-}
-
 double mean_luminance(const Scene& scene, const Slot& slot) { return std::max(luminance(mean(scene, slot)), 0.0f); }
 
 // Of a textured lamp, by points on it: its (u, v) may show a part of the texture alone. A little of what the whole
@@ -220,6 +213,12 @@ double area_power(const Scene& scene, const Light& light) {
 }
 
 }  // namespace
+
+double spot_solid_angle(const Light& light) {
+  const double middle = 0.5 * (double(light.cutoff) + light.beam), half = 0.5 * (double(light.cutoff) - light.beam);
+  const double slope = half > 1e-9 ? std::sin(half) / half : 1;
+  return 2 * std::numbers::pi * (1 - std::cos(middle) * slope);
+}
 
 bool sample_direct(const Scene& scene, uint32_t id, const Vec3& x, const Vec2& u, DirectSample& out) {
   const Light& light = scene.lights[id];

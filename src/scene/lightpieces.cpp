@@ -127,9 +127,8 @@ struct Gatherer {
   const LightTree& tree;
   std::vector<BoundedPiece> out;
 
-  void add(uint32_t light, uint32_t part, const LightBounds& bounds, double watts, bool infinite) {
-    BoundedPiece p{{light, part}, bounds, watts, infinite};
-    out.push_back(p);
+  void add(uint32_t light, uint32_t part, const LightBounds& bounds, double watts, bool infinite, double peak = 1) {
+    out.push_back({{light, part}, bounds, watts, peak, infinite});
   }
 };
 
@@ -173,14 +172,49 @@ void add_infinite(Gatherer& g, uint32_t id, double watts) {
 // A mesh of fewer is not worth the walk through the tree.
 constexpr size_t least_triangles = 16;
 
-// The ball about a shape's centre, as a box.
-void set_ball(const Vec3& center, float radius, LightBounds& b) { b.low = center - radius, b.high = center + radius; }
+// The ball about a shape's centre, and the box about the shape.
+void set_ball(const Vec3& center, float radius, const Vec3& box, LightBounds& b) {
+  b.low = center - box, b.high = center + box;
+  b.radius = radius;
+}
+
+// Half extents of an ellipse's box.
+Vec3 box_of(const Vec3& x, const Vec3& y) { return glm::sqrt(x * x + y * y); }
+
+// Half of an ellipse's longer axis.
+float longest(const Vec3& x, const Vec3& y) {
+  const float a = length2(x), b = length2(y);
+  return std::sqrt(0.5f * (a + b) + std::sqrt(sqr(0.5f * (a - b)) + sqr(glm::dot(x, y))));
+}
+
+// Of a mesh that is one piece, the cone of all normals; the largest area that is seen from any side, roughly, over all
+// of it.
+double set_normals(const Mesh& mesh, LightBounds& b) {
+  LightBounds all;
+  for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+    LightBounds one;
+    one.axis = mesh.faces[i].ng, one.weight = double(triangle_area(mesh, uint32_t(i)));
+    all = join(all, one);
+  }
+  b.axis = all.axis, b.cos_spread = all.cos_spread;
+  if (!(all.weight > 0) || mesh.triangles.size() >= least_triangles) return 1;
+  const auto seen_from = [&](const Vec3& w) {
+    double sum = 0;
+    for (size_t i = 0; i < mesh.triangles.size(); ++i)
+      sum += double(triangle_area(mesh, uint32_t(i)) * std::max(glm::dot(mesh.faces[i].ng, w), 0.0f));
+    return sum / all.weight;
+  };
+  double most = seen_from(all.axis);
+  for (const auto& face : mesh.faces) most = std::max(most, seen_from(face.ng));
+  return std::clamp(most, 0.25, 1.0);
+}
 
 void add_area(Gatherer& g, uint32_t id, double watts) {
   const Light& light = g.scene.lights[id];
   const Shape& shape = g.scene.shapes[light.shape];
   LightBounds b;
   b.cos_reach = 0;
+  double peak = 1;
   if (light.rectangle.area > 0) {
     const Rectangle& r = light.rectangle;
     for (const Vec3& p : {r.corner, r.corner + r.x, r.corner + r.y, r.corner + r.x + r.y})
@@ -202,21 +236,21 @@ void add_area(Gatherer& g, uint32_t id, double watts) {
               mesh.total_area > 0 ? watts * double(triangle_area(mesh, uint32_t(i))) / mesh.total_area : 0, false);
     }
     if (divided) return;
-    b.cos_spread = mesh.triangles.size() > 1 ? -1 : 1;
+    peak = set_normals(mesh, b);
   } else {
     const Mat4& m = shape.to_world;
     const Vec3 x(m[0]), y(m[1]), z(m[2]), o(m[3]);
-    const float across = std::sqrt(std::max(length2(x), length2(y))) * 1.0001f;
+    const float across = longest(x, y);
     float pdf;
     if (shape.kind == ShapeKind::disk)
-      set_ball(o, std::sqrt(length2(x) + length2(y)), b),
-          b.axis = sample_area(g.scene, light.shape, Vec2(0.5f), pdf).ng;
+      set_ball(o, across, box_of(x, y), b), b.axis = sample_area(g.scene, light.shape, Vec2(0.5f), pdf).ng;
     else if (shape.kind == ShapeKind::sphere)
-      set_ball(o, across, b), b.cos_spread = -1;
+      set_ball(o, across, Vec3(across), b), b.cos_spread = -1, peak = 0.25;
     else
-      set_ball(o + 0.5f * z, 2 * across + 0.5f * std::sqrt(length2(z)), b), b.cos_spread = -1;
+      set_ball(o + 0.5f * z, across + 0.5f * std::sqrt(length2(z)), box_of(x, y) + 0.5f * glm::abs(z), b),
+          b.cos_spread = -1, peak = 1 / std::numbers::pi;
   }
-  g.add(id, none, b, watts, false);
+  g.add(id, none, b, watts, false, peak);
 }
 
 void add_delta(Gatherer& g, uint32_t id, double watts) {
@@ -224,11 +258,18 @@ void add_delta(Gatherer& g, uint32_t id, double watts) {
   LightBounds b;
   b.low = b.high = light.position;
   b.axis = light.direction;
+  double peak = 0.25;
   if (light.kind == LightKind::point) b.cos_spread = -1;
-  if (light.kind == LightKind::spot) b.cos_reach = std::cos(light.cutoff);
-  if (light.kind == LightKind::projector)
-    b.cos_spread = 1 / std::sqrt(1 + glm::dot(light.plane, light.plane)) - 1e-4f, b.cos_reach = 0.99f;
-  g.add(id, none, b, watts, false);
+  if (light.kind == LightKind::spot) {
+    const float beam = std::min(light.beam, light.cutoff);  // as bright all over, and falling off beyond
+    b.cos_spread = std::cos(beam), b.cos_reach = std::cos(light.cutoff - beam);
+    peak = std::numbers::pi / std::max(spot_solid_angle(light), 1e-12);
+  }
+  if (light.kind == LightKind::projector) {
+    b.cos_spread = 1 / std::sqrt(1 + glm::dot(light.plane, light.plane)) - 1e-4f;
+    peak = std::numbers::pi / std::max(4.0 * light.plane.x * light.plane.y, 1e-12);
+  }
+  g.add(id, none, b, watts, false, peak);
 }
 
 }  // namespace
@@ -239,6 +280,10 @@ LightBounds join(const LightBounds& a, const LightBounds& b) {
   LightBounds out = a.cos_spread <= b.cos_spread ? a : b;
   const LightBounds& lesser = a.cos_spread <= b.cos_spread ? b : a;
   out.low = glm::min(a.low, b.low), out.high = glm::max(a.high, b.high);
+  const auto reach = [&](const LightBounds& of) {
+    return radius_of(of) + std::sqrt(length2(middle(of) - middle(out)));
+  };
+  out.radius = std::max(reach(a), reach(b));
   out.weight = a.weight + b.weight;
   out.cos_reach = std::min(a.cos_reach, b.cos_reach);
   // The cone about both cones (Conty Estevez and Kulla 2018, algorithm 1).
@@ -291,10 +336,11 @@ std::vector<BoundedPiece> light_pieces(const Scene& scene, const LightTree& tree
       sum += p.watts;
     }
     // uniform: every light alike, its pieces by power
-    const bool uniform = tree.choice == LightChoice::uniform;
+    const bool uniform = tree.choice == LightChoice::uniform, by_power = tree.choice == LightChoice::power;
     for (size_t k = from; k < g.out.size(); ++k) {
       BoundedPiece& p = g.out[k];
-      p.bounds.weight = uniform && sum > 0 ? p.watts / sum * asked : p.watts;
+      const double promise = by_power ? p.watts : std::min(p.watts * p.peak, 1e38);
+      p.bounds.weight = uniform && sum > 0 ? p.watts / sum * asked : promise;
       if (starts_alone) p.bounds.weight = 0;
     }
   }

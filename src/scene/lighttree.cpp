@@ -30,7 +30,7 @@ struct Builder {
   std::vector<BoundedPiece>& pieces;
   bool sky = false;  // few infinite lights: each is a node
 
-  Vec3 middle(size_t i) const { return 0.5f * (pieces[i].bounds.low + pieces[i].bounds.high); }
+  Vec3 middle(size_t i) const { return ajar::middle(pieces[i].bounds); }
 };
 
 constexpr int bins = 16;
@@ -95,8 +95,8 @@ void set_node(const LightBounds& b, bool infinite, LightNode& n) {
   n.infinite = infinite;
   n.axis = b.axis, n.cos_spread = b.cos_spread, n.sin_spread = sin_of(b.cos_spread), n.cos_reach = b.cos_reach;
   n.weight = float(std::min(b.weight, 1e38));
-  n.center = 0.5f * b.low + 0.5f * b.high;
-  n.radius = infinite ? 0 : 0.5f * std::sqrt(length2(b.high - b.low)) * 1.0001f + 1e-6f * max_abs(n.center);
+  n.center = middle(b);
+  n.radius = infinite ? 0 : radius_of(b) * 1.0001f + 1e-6f * max_abs(n.center);
 }
 
 LightBounds build(Builder& b, uint32_t node, size_t from, size_t to, int depth) {

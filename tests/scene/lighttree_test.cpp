@@ -180,6 +180,72 @@ TEST(LightTree, StandsExtremes) {
   }
 }
 
+// Small lamps of every kind, ten above the floor, which shine down.
+Scene small_lamps() {
+  Scene scene;
+  const uint32_t grey = add_diffuse(scene, Rgb(0.5f));
+  add_area_light(scene, add_quad(scene, {0, 10, 0}, {0.1f, 0, 0}, {0, 0, 0.1f}, grey), Rgb(1));
+  Mesh kite;
+  kite.positions = {{3, 10, 0}, {3.1f, 10, 0.02f}, {3.1f, 10, 0.1f}, {3, 10, 0.05f}};
+  kite.triangles = {{0, 1, 2}, {0, 2, 3}};
+  add_area_light(scene, add_mesh(scene, kite, grey), Rgb(1));
+  const Mat4 down = glm::rotate(glm::translate(Mat4(1), {-3, 10, 0}), pi / 2, Vec3(1, 0, 0));
+  const Mat4 across = glm::translate(Mat4(1), {-6, 10, -0.05f});
+  add_area_light(scene, add_quadric(scene, ShapeKind::disk, glm::scale(down, Vec3(0.1f)), grey), Rgb(1));
+  add_area_light(scene, add_quadric(scene, ShapeKind::cylinder, glm::scale(across, Vec3(0.01f, 0.01f, 0.1f)), grey),
+                 Rgb(1));
+  add_area_light(scene, add_sphere(scene, {6, 10, 0}, 0.1f, grey), Rgb(1));
+  int at = 3;
+  for (const LightKind kind : {LightKind::point, LightKind::spot, LightKind::projector}) {
+    Light& light = scene.lights[add_light(scene, kind, Rgb(1))];
+    light.position = {0, 10, float(at)}, light.direction = {0, -1, 0};
+    light.to_world = look_at(light.position, {0, 0, float(at)});
+    light.cutoff = 0.1f, light.beam = 0.08f, light.plane = Vec2(0.05f);
+    at += 3;
+  }
+  finish(scene);
+  return scene;
+}
+
+// Where nothing stands between and a lamp is small, its promise is what comes: however narrow the cone that it shines
+// into, lamps are chosen by what they bring.
+TEST(LightTree, PromisesAreKept) {
+  const Scene scene = small_lamps();
+  const LightTree& t = scene.light_tree;
+  ASSERT_EQ(t.pieces.size(), scene.lights.size());
+  for (uint32_t n = 0; n < t.nodes.size(); ++n) {
+    if (t.nodes[n].left != 0) continue;
+    const LightPiece piece = t.pieces[t.nodes[n].first];
+    Receiver at{t.nodes[n].center, {0, 1, 0}};
+    at.p.y = 0;
+    double brings = 0;
+    constexpr uint32_t rays = 4096;
+    for (uint32_t i = 0; i < rays; ++i) {
+      DirectSample d;
+      if (sample_direct(scene, piece, at.p, kit::random2(i, 5), d))
+        brings += double(pi * luminance(d.radiance) * d.wi.y / d.pdf) / rays;
+    }
+    EXPECT_NEAR(double(importance(t, n, at)) / brings, 1, 0.02) << "light " << piece.light;
+    at.p.x += 2;  // beside the cones
+    const LightKind kind = scene.lights[piece.light].kind;
+    EXPECT_EQ(importance(t, n, at) == 0, kind == LightKind::spot || kind == LightKind::projector) << piece.light;
+  }
+}
+
+TEST(LightTree, BallsAreTight) {
+  const Scene scene = small_lamps();
+  const LightTree& t = scene.light_tree;
+  for (const LightNode& n : t.nodes) {
+    if (n.left != 0) continue;
+    const Light& light = scene.lights[t.pieces[n.first].light];
+    if (light.kind != LightKind::area || light.rectangle.area > 0) continue;
+    if (scene.shapes[light.shape].kind == ShapeKind::mesh) continue;
+    const float half = scene.shapes[light.shape].kind == ShapeKind::cylinder ? 0.06f : 0.1f;
+    EXPECT_GE(n.radius, 0.05f);
+    EXPECT_LT(n.radius, half * 1.01f);
+  }
+}
+
 // Promises beyond the range of numbers: none of such lamps is forgotten.
 TEST(LightTree, PromisesHaveASum) {
   Scene scene;

@@ -138,6 +138,8 @@ LightPoint light_point(const Scene& scene, uint32_t light, const Vec3& w);
 /// Emitted power [W] (luminance) used to choose among lights; infinite lights with the scene's bounding sphere. Never 0
 /// for a light that emits somewhere.
 float power(const Scene& scene, uint32_t light);
+/// Integral of a spot's intensity over directions, relative to that along its axis.
+double spot_solid_angle(const Light& light);
 
 /// Image map over the sphere, bilinear. In the light's own space y is up and the direction (sin phi sin theta, cos
 /// theta, -cos phi sin theta) looks up u = phi / (2 pi), v = theta / pi, v = 0 on top: the latitude-longitude
