@@ -179,7 +179,7 @@ void set_ball(const Vec3& center, float radius, const Vec3& box, LightBounds& b)
 }
 
 // Half extents of an ellipse's box.
-Vec3 box_of(const Vec3& x, const Vec3& y) { return glm::sqrt(x * x + y * y); }
+Vec3 ellipse_box(const Vec3& x, const Vec3& y) { return glm::sqrt(x * x + y * y); }
 
 // Half of an ellipse's longer axis.
 float longest(const Vec3& x, const Vec3& y) {
@@ -243,11 +243,11 @@ void add_area(Gatherer& g, uint32_t id, double watts) {
     const float across = longest(x, y);
     float pdf;
     if (shape.kind == ShapeKind::disk)
-      set_ball(o, across, box_of(x, y), b), b.axis = sample_area(g.scene, light.shape, Vec2(0.5f), pdf).ng;
+      set_ball(o, across, ellipse_box(x, y), b), b.axis = sample_area(g.scene, light.shape, Vec2(0.5f), pdf).ng;
     else if (shape.kind == ShapeKind::sphere)
       set_ball(o, across, Vec3(across), b), b.cos_spread = -1, peak = 0.25;
     else
-      set_ball(o + 0.5f * z, across + 0.5f * std::sqrt(length2(z)), box_of(x, y) + 0.5f * glm::abs(z), b),
+      set_ball(o + 0.5f * z, across + 0.5f * std::sqrt(length2(z)), ellipse_box(x, y) + 0.5f * glm::abs(z), b),
           b.cos_spread = -1, peak = 1 / std::numbers::pi;
   }
   g.add(id, none, b, watts, false, peak);
