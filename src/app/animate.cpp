@@ -103,7 +103,7 @@ bool is_done(Work& w, int frame) {
   const std::string here = frame_key(w, frame, *load_frame(w.shooting, frame));
   const auto* there = found == metadata.end() ? nullptr : std::get_if<std::string>(&found->second);
   if (there && *there == here) {
-    if (const std::string png = frame_name(w.png, frame); !is_there(png)) write_png(png, image);
+    if (const std::string png = frame_name(w.png, frame); !is_file(png)) write_png(png, image);
     return true;
   }
   const std::string why = there && there->starts_with(w.options_key + ",")
@@ -216,7 +216,9 @@ Lessons teach_frame(Work& w, int frame, const Stage& stage) {
                                          return !stop_asked();
                                        });
   if (!fields) interrupted(frame);
-  w.carried = Carried{uint32_t(frame), std::move(*fields)};
+  Carried next{uint32_t(frame), std::move(*fields), stage.scene->content};
+  next.history = w.carried ? go_on(w.carried->history, w.carried->content, next.content) : go_on(0, 0, next.content);
+  w.carried = std::move(next);
   lessons.seconds = wall_seconds() - wall, lessons.cpu_seconds = process_cpu_seconds() - cpu;
   return lessons;
 }
@@ -228,6 +230,19 @@ void tell_frame(const Work& w, int frame) {
   std::fflush(stdout);
 }
 
+// Whether the frames that taught these fields have the files that they had then. Where this one has those of the first
+// frame, those between are not loaded for it.
+bool is_of_these_files(Work& w, const Carried& carried) {
+  uint64_t before = load_frame(w.shooting, 0)->content, history = go_on(0, 0, before);
+  if (load_frame(w.shooting, int(carried.frame))->content != carried.content) return false;
+  if (carried.content == before && carried.history == history) return true;
+  for (int f = 1; f <= int(carried.frame); ++f) {
+    const uint64_t content = load_frame(w.shooting, f)->content;
+    history = go_on(history, before, content), before = content;
+  }
+  return history == carried.history;
+}
+
 // From the first frame whose fields are needed to the last that is missing.
 void render_frames(Work& w) {
   const bool taught = is_guided(w.options.integrator) && (w.sequence.coherence.fields || w.sequence.coherence.numbers);
@@ -235,7 +250,8 @@ void render_frames(Work& w) {
   const int count = w.shooting.timeline.frames.count;
   int frame = w.to_do.front();
   if (w.carries) {
-    w.carried = find_carried(w.folder, w.key, frame - 1);
+    w.carried =
+        find_carried(w.folder, w.key, frame - 1, [&](const Carried& found) { return is_of_these_files(w, found); });
     frame = w.carried ? int(w.carried->frame) + 1 : 0;
     if (w.carried) before = Stage{load_frame(w.shooting, int(w.carried->frame)), {}, {}, {}};
     if (frame < w.to_do.front() && !w.arguments.quiet)
@@ -260,7 +276,7 @@ void render_frames(Work& w) {
 // What would stand in the way of the files to come.
 void check_outputs(const Work& w) {
   check_files(w.arguments, w.to_do.front());
-  for (const int frame : w.to_do) check_record(frame_name(w.pattern, frame));
+  for (const int frame : w.to_do) check_no_folders(w.arguments, frame), check_record(frame_name(w.pattern, frame));
   if (w.carries) check_file(carried_name(w));
 }
 

@@ -48,6 +48,11 @@ void check_files(const AnimateArguments& a, int frame) {
   for (const Named& file : written(a, {frame, frame, frame + 1})) check_file(file.path);
 }
 
+void check_no_folders(const AnimateArguments& a, int frame) {
+  for (const Named& file : written(a, {frame, frame, frame + 1}))
+    if (is_there(file.path) && !is_file(file.path)) check_file(file.path);
+}
+
 void check_references(const AnimateArguments& a, Shooting& shooting) {
   if (a.reference.empty()) return;
   const FramePattern reference = parse_pattern("--reference", a.reference);

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "ajar/core/error.h"
+#include "ajar/core/files.h"
 
 namespace ajar {
 
@@ -109,7 +110,8 @@ bool is_exr(const std::string& path) { return extension_of(path) == ".exr"; }
 std::string place_of(const std::string& path) {
   namespace fs = std::filesystem;
   std::error_code error;
-  fs::path place = fs::weakly_canonical(fs::absolute(path, error), error);
+  const bool dangles = fs::is_symlink(path, error) && !fs::exists(path, error);  // a link to what is yet to be written
+  fs::path place = fs::weakly_canonical(fs::absolute(dangles ? target_of(path) : path, error), error);
   if (place.has_relative_path() && !place.has_filename()) place = place.parent_path();  // of a folder: out/
   return place.empty() ? path : place.string();
 }

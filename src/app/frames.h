@@ -2,6 +2,7 @@
 // Leaves: what its frames need one after another: names, scenes, fields; and what is there of them already.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -58,8 +59,9 @@ Picture read_frame(const std::string& path);
 /// Of R, G and B.
 double mean_of(const Picture& image);
 
-/// The newest carried fields in a folder that belong to this key and to no frame after the given one.
-std::optional<Carried> find_carried(const std::string& folder, const std::string& key, int last);
+/// The newest carried fields in a folder that belong to this key and to no frame after the given one, and suit.
+std::optional<Carried> find_carried(const std::string& folder, const std::string& key, int last,
+                                    const std::function<bool(const Carried&)>& suits);
 
 /// The figures of all frames of the animation that are there. reference: empty for none; of what is missing there no
 /// error is known, nor flicker of steps between frames of two sizes. Pixels are read where they are compared alone, or

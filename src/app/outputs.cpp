@@ -216,16 +216,18 @@ void write_record(const RenderArguments& a, const Run& run, const RenderState& s
 
 void write_image(const RenderArguments& a, const Scene& scene, const Accel& accel, Run& run, const RenderState& state) {
   const double wall = wall_seconds(), cpu = process_cpu_seconds();
-  const bool png_beside = a.png && !is_png(a.out);
   if (!is_png(a.out)) write_exr(a.out, image_of(a, scene, accel, state), metadata(run, state), a.half);
   if (is_png(a.out)) write_png(a.out, develop(state.film));
-  if (png_beside) write_png(with_extension(a.out, ".png"), develop(state.film));
   run.write_seconds = wall_seconds() - wall;
   run.write_cpu = process_cpu_seconds() - cpu;
   write_record(a, run, state);
-  if (a.quiet) return;
-  say(stdout, "{}\n", a.out);
-  if (png_beside) say(stdout, "{}\n", with_extension(a.out, ".png"));
+  if (!a.quiet) say(stdout, "{}\n", a.out);
+}
+
+void write_png_beside(const RenderArguments& a, const RenderState& state) {
+  const std::string png = with_extension(a.out, ".png");
+  write_png(png, develop(state.film));
+  if (!a.quiet) say(stdout, "{}\n", png);
 }
 
 void Saver::save(const RenderState& state) {

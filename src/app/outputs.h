@@ -38,6 +38,8 @@ void check_record(const std::string& image);
 void write_record(const RenderArguments&, const Run&, const RenderState&);
 /// Image, features and record; prints what it wrote, unless told to be quiet.
 void write_image(const RenderArguments&, const Scene&, const Accel&, Run&, const RenderState&);
+/// The same of the tonemapped image beside it.
+void write_png_beside(const RenderArguments&, const RenderState&);
 /// Of rendering, from save to save.
 inline constexpr double save_seconds = 60;
 /// Saves the state every minute of rendering. Where that fails the render goes on; it is said once.

@@ -1,6 +1,7 @@
 // ajar render: loads a scene, renders it within a budget, writes image and record.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -9,6 +10,7 @@
 #include <thread>
 
 #include "ajar/core/error.h"
+#include "ajar/core/files.h"
 #include "arguments.h"
 #include "commands.h"
 #include "outputs.h"
@@ -52,6 +54,7 @@ void plan_run(const RenderArguments& a, const Scene& scene, Run& run) {
   const std::string& chosen = run.options.integrator = run.plan.integrator;
   run.options.learn_lights &= !is_guided(chosen);
   run.options.techniques &= has_strategies(chosen);
+  run.options.even &= is_guided(chosen);
   if (!a.quiet) say(stderr, "ajar: note: {} is used: {}\n", chosen, reason_of(run.plan));
   if (!is_guided(chosen) && !a.save_fields.empty())
     say(stderr, "ajar: note: nothing is learned, {} is not written\n", a.save_fields);
@@ -65,10 +68,14 @@ void note_integrator(const RenderArguments& a, const Run& run) {
   say(stderr, "ajar: note: the scene asks for {}; --plan auto chooses what suits it\n", run.options.integrator);
 }
 
+// A file of an earlier render that is not the one to go on from.
+bool is_of_another(const std::string& path, const std::string& goes_on_from) {
+  return !path.empty() && is_there(path) && (goes_on_from.empty() || !is_same_file(path, goes_on_from));
+}
+
 // A checkpoint of an earlier render that would be lost.
 void note_checkpoint(const RenderArguments& a) {
-  std::error_code unknown;
-  if (a.quiet || a.checkpoint.empty() || !a.resume.empty() || !std::filesystem::exists(a.checkpoint, unknown)) return;
+  if (a.quiet || !is_of_another(a.checkpoint, a.resume)) return;
   say(stderr, "ajar: note: {} is begun anew; --resume {} would go on from it\n", a.checkpoint, a.checkpoint);
 }
 
@@ -76,23 +83,29 @@ bool has_samples(const Film& film) { return film.passes > 0 || film.chunks > 0; 
 
 // Files of an earlier render that one which was stopped early does not replace: they are worth more.
 struct Spared {
-  bool image = false, checkpoint = false;
+  bool image = false, checkpoint = false, fields = false;
 };
 
-// Of a render that does not go on from them: the image where no pass is whole, the checkpoint before the first save on
-// the way.
-Spared spare(const RenderArguments& a, const Run& run, const RenderState& state) {
-  if (!run.interrupted || !a.resume.empty()) return {};
-  std::error_code unknown;
-  return {
-      state.film.passes == 0 && std::filesystem::exists(a.out, unknown),
-      state.stats.seconds <= save_seconds && !a.checkpoint.empty() && std::filesystem::exists(a.checkpoint, unknown)};
+// Of a render that does not go on from them, and was at work for so many seconds: the image where no pass is whole,
+// checkpoint and fields before the first save on the way.
+Spared spare(const RenderArguments& a, const Run& run, const RenderState& state, double seconds) {
+  if (!run.interrupted) return {};
+  const bool early = seconds <= save_seconds;
+  Spared out;
+  out.image = state.film.passes == 0 && a.resume.empty() && is_there(a.out);
+  out.checkpoint = early && is_of_another(a.checkpoint, a.resume);
+  out.fields = early && a.resume.empty() && is_of_another(a.save_fields, a.load_fields);
+  return out;
 }
 
 std::string left_alone(const RenderArguments& a, const Spared& spared) {
-  if (spared.image && spared.checkpoint) return fmt::format("; {} and {} are left as they were", a.out, a.checkpoint);
-  if (!spared.image && !spared.checkpoint) return {};
-  return fmt::format("; {} is left as it was", spared.image ? a.out : a.checkpoint);
+  std::vector<std::string> names;
+  if (spared.image) names.push_back(a.out);
+  if (spared.checkpoint) names.push_back(a.checkpoint);
+  if (spared.fields) names.push_back(a.save_fields);
+  if (names.empty()) return {};
+  return names.size() == 1 ? fmt::format("; {} is left as it was", names[0])
+                           : fmt::format("; {} are left as they were", fmt::join(names, " and "));
 }
 
 std::string interruption(const RenderArguments& a, const Spared& spared, const Film& film) {
@@ -188,23 +201,26 @@ void trace(const RenderArguments& a, const Scene& scene, const Accel& accel, Run
     return !stop_asked();
   });
   run.interrupted = stop_asked();
-  beside([&] { finish(progress, budget, state, !run.interrupted), log.write(state, true); });
+  beside([&] { finish(progress, budget, state, !run.interrupted); });
 }
 
 void write_all(const RenderArguments& a, const Scene& scene, const Accel& accel, Run& run, RenderState& state,
-               const Spared& spared, const Log& log) {
+               const Spared& spared, Log& log) {
   std::vector<std::function<void()>> writes;
   const bool begun = has_samples(state.film) || !run.interrupted;  // else what is there is worth more
   if (!a.checkpoint.empty() && begun && !spared.checkpoint)
     writes.emplace_back([&] { save_checkpoint(a.checkpoint, checkpoint_key(run, state.film), state); });
-  if (!a.save_fields.empty() && is_guided(run.options.integrator) && begun)
+  if (!a.save_fields.empty() && is_guided(run.options.integrator) && begun && !spared.fields)
     writes.emplace_back([&] {
       save_fields(a.save_fields, stored_fields(scene, state.learning, passes_drawn(state.film, state.adaptive)));
     });
   writes.emplace_back([&] {  // last of what goes on from the state
     if (run.interrupted) show_merged(state);
-    if (has_samples(state.film) && !spared.image) write_image(a, scene, accel, run, state);
+    log.write(state, true);
   });
+  const bool shows = has_samples(state.film) && !spared.image;
+  if (shows) writes.emplace_back([&] { write_image(a, scene, accel, run, state); });
+  if (shows && a.png && !is_png(a.out)) writes.emplace_back([&] { write_png_beside(a, state); });
   if (run.options.techniques && begun && !spared.image)
     writes.emplace_back([&] { write_pyramid(state.pyramid, state.film, a.techniques); });
   writes.emplace_back([&] {
@@ -252,8 +268,9 @@ void run_render(RenderArguments a) {
 
   RenderState state = begin(a, scene, run);
   Log log = open_log(a, std::move(reference));
+  const double before = state.stats.seconds;
   trace(a, scene, accel, run, state, log);
-  const Spared spared = spare(a, run, state);
+  const Spared spared = spare(a, run, state, state.stats.seconds - before);
   write_all(a, scene, accel, run, state, spared, log);
   note_plain(a, run, state), note_black(a, run, state);
   warn(run, state);

@@ -218,7 +218,7 @@ void check_plan(const RenderArguments& a) {
   const bool named = !a.integrator.empty();
   if (named && !a.plan.empty() && a.plan != "none" && a.plan != "all")
     throw Error("--plan: chooses the integrator; leave out either this or --integrator, or write --plan all");
-  if (named && a.plan == "all" && !leaves_out(a.integrator))
+  if (named && a.resume.empty() && a.plan == "all" && !leaves_out(a.integrator))  // a checkpoint names its own
     throw Error(fmt::format("--plan all: {} leaves nothing out; leave it out", a.integrator));
   if (a.plan == "auto" && !a.resume.empty())
     throw Error("--plan auto: a checkpoint goes on with the integrator that it began with; leave out --plan");

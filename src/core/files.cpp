@@ -168,6 +168,11 @@ bool is_there(const std::string& path) {
   return std::filesystem::exists(path, unknown);
 }
 
+bool is_file(const std::string& path) {
+  std::error_code unknown;
+  return std::filesystem::is_regular_file(path, unknown);
+}
+
 void make_folder(const std::string& path) {
   std::error_code failure;
   std::filesystem::create_directories(path, failure);

@@ -8,7 +8,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind carried_kind = {"AJARan07", "carried field file", "an animation leaves one beside its frames",
+constexpr FileKind carried_kind = {"AJARan08", "carried field file", "an animation leaves one beside its frames",
                                    "remove it: the fields are learned again from the first frame on"};
 
 // Share of a frame's time that its lessons may take.
@@ -77,10 +77,14 @@ RenderState start_with(const Scene& scene, const RenderOptions& options, Fields 
   return state;
 }
 
+uint64_t go_on(uint64_t history, uint64_t before, uint64_t content) {
+  return content == before ? history : checksum(&content, sizeof content, history);
+}
+
 void save_carried(const std::string& path, const std::string& key, const Carried& carried) {
   write_file(path, carried_kind, [&](Writer& w) {
     w.key(key);
-    w.value(carried.frame);
+    w.value(carried.frame), w.value(carried.content), w.value(carried.history);
     write(w, carried.fields);
   });
 }
@@ -93,7 +97,7 @@ Carried load_carried(const std::string& path, const std::string& key) {
   if (stored != key)
     throw Error(fmt::format("{}: fields of another animation ({}); this one is {}; remove the file, or write elsewhere",
                             path, stored, key));
-  r.value(carried.frame);
+  r.value(carried.frame), r.value(carried.content), r.value(carried.history);
   read(r, carried.fields);
   r.finish();
   return carried;

@@ -255,12 +255,12 @@ void set_reference(const Bench& bench, Stand& stand) {
   const Reference& r = *stand.reference;
   stand.reference_hash =
       hash_of({reinterpret_cast<const char*>(r.image.pixels.data()), r.image.pixels.size() * sizeof r.image.pixels[0]});
+  for (const Method& method : bench.suite.methods)  // what does not go with them leaves the folder as it is
+    for (const uint64_t seed : bench.suite.seeds) find_run(bench, stand, method, seed);
   write_image(bench, stand, "reference", r.image);
   stand.json["reference"] = {{"image", fmt::format("images/{}/reference.exr", stand.scene->name)},
                              {"relmse", r.relmse ? Json(*r.relmse) : Json(nullptr)},
                              {"made_by", r.made_by}};
-  for (const Method& method : bench.suite.methods)
-    for (const uint64_t seed : bench.suite.seeds) find_run(bench, stand, method, seed);
 }
 
 /// The folder is this suite's from now on.

@@ -116,6 +116,38 @@ TEST_F(AnimateFiles, WhatStandsInTheWayIsToldBeforeTheWork) {
     EXPECT_FALSE(fs::exists(in("shot/f_0.exr")));
     fs::remove(in("shot/" + std::string(name)));
   }
+  const std::vector<std::string> two = {"--frames",     "2",    "--spp", "1",
+                                        "--integrator", "path", "-o",    in("shot/f_%d.exr")};
+  const std::string in_the_way = "f_1.png: cannot be written (Is a directory)";
+  fs::create_directories(in("shot/f_1.png"));
+  EXPECT_SAYS(said(two), in_the_way);
+  EXPECT_FALSE(fs::exists(in("shot/f_0.exr")));
+  fs::remove(in("shot/f_1.png"));
+  EXPECT_EQ(said(two), "");
+  fs::remove(in("shot/f_1.png")), fs::create_directories(in("shot/f_1.png"));
+  EXPECT_SAYS(said(two), in_the_way);  // of a frame that is done
+}
+
+// What frames learned of a file that is another by now is learned again.
+TEST_F(AnimateFiles, FieldsAreOfTheFilesThatTaughtThem) {
+  const auto triangle = [](double x) { return fmt::format("v -1 -1 {0}\nv 1 -1 {0}\nv 0 1 {0}\nf 1 2 3\n", x); };
+  for (int n = 0; n < 3; ++n) write(fmt::format("p{}.obj", n), triangle(0.1 * n));
+  put(R"(<default name="n" value="0"/><shape type="obj"><string name="filename" value="p$n.obj"/></shape>
+    <emitter type="constant"/>)");
+  const auto frames = [&](const std::string& range, const std::string& shot) {
+    return said({"--frames", range, "-D", "n=0..2", "--spp", "2", "--teach", "1", "--integrator", "guided-bdpt", "-o",
+                 in(shot + "/f_%d.exr")});
+  };
+  EXPECT_EQ(frames("0-1/3", "one"), "");
+  fs::copy(in("one"), in("same"));
+  write("p1.obj", triangle(-1.5));
+  EXPECT_EQ(frames("2/3", "one"), "");
+  EXPECT_EQ(frames("2/3", "new"), "");
+  EXPECT_TRUE(kit::bytes_of(in("one/f_2.png")) == kit::bytes_of(in("new/f_2.png")));
+  EXPECT_TRUE(read_picture(in("one/f_2.exr")).pixels == read_picture(in("new/f_2.exr")).pixels);
+  write("p1.obj", triangle(0.1));
+  EXPECT_EQ(frames("2/3", "same"), "");
+  EXPECT_FALSE(read_picture(in("same/f_2.exr")).pixels == read_picture(in("new/f_2.exr")).pixels);
 }
 
 TEST_F(AnimateFiles, WhatIsNoRecordIsNotWrittenOver) {

@@ -238,6 +238,20 @@ TEST_F(Outputs, WhatFailsDoesNotKeepTheRestFromBeingWritten) {
   EXPECT_TRUE(fs::exists("b"));
 }
 
+TEST_F(Outputs, ALinkToNothingIsTheFileThatItWillBe) {
+  fs::create_symlink("state", "l.exr");
+  EXPECT_EQ(error_of({"-o", "l.exr", "--checkpoint", "state"}).find("--checkpoint state: is the same file as -o l.exr"),
+            0u);
+  EXPECT_FALSE(fs::exists("state"));
+}
+
+TEST_F(Outputs, APngThatCannotBeWrittenLeavesTheRecord) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
+  fs::create_symlink("/dev/full", "a.png");
+  EXPECT_NE(error_of({"--png"}).find("a.png: cannot be written (No space left"), std::string::npos);
+  EXPECT_TRUE(fs::exists("a.exr") && fs::exists("a.json"));
+}
+
 TEST_F(Outputs, ASaveThatFailsOnTheWayIsAWarning) {
   Saver saver{"box.xml/state", "key"};
   RenderState state;

@@ -82,6 +82,33 @@ TEST_F(Program, WhatIsStoppedEarlyReplacesNoEarlierWork) {
   EXPECT_FALSE(kit::bytes_of(folder / "ck") == state) << "which it goes on from";
 }
 
+// Going on from one thing is no leave to replace another.
+TEST_F(Program, WhatIsStoppedEarlyReplacesNothingThatItDoesNotGoOnFrom) {
+  const std::string render = "\"$ajar\" render box.xml --integrator guided-bdpt --plan all --threads 1 -o a.exr ";
+  ASSERT_EQ(run(render + "--spp 4 --checkpoint ck --save-fields learned" + small), 0) << said();
+  fs::copy_file(folder / "ck", folder / "other");
+  const std::string state = kit::bytes_of(folder / "other"), fields = kit::bytes_of(folder / "learned");
+  const std::string on = render + "--spp 1000000000 --log log" + small;
+  EXPECT_EQ(run(stopped(on + "--resume ck --checkpoint other", "log", "INT")), 130) << said();
+  EXPECT_NE(said().find("; other is left as it was\n"), std::string::npos) << said();
+  EXPECT_TRUE(kit::bytes_of(folder / "other") == state);
+  fs::remove(folder / "log");
+  EXPECT_EQ(run(stopped(on + "--save-fields learned", "log", "INT")), 130) << said();
+  EXPECT_NE(said().find("; learned is left as it was\n"), std::string::npos) << said();
+  EXPECT_TRUE(kit::bytes_of(folder / "learned") == fields);
+  fs::remove(folder / "log");
+  EXPECT_EQ(run(stopped(on + "--load-fields learned --save-fields learned", "log", "INT")), 130) << said();
+  EXPECT_FALSE(kit::bytes_of(folder / "learned") == fields) << "which it goes on from";
+}
+
+// What a checkpoint does not read does not stand in its way.
+TEST_F(Program, CheckpointsOfWhatLearnsNothingGoOn) {
+  const std::string render = "\"$ajar\" render box.xml -o a.exr --checkpoint ck ";
+  ASSERT_EQ(run(render + "--plan auto --even --spp 2" + small), 0) << said();
+  EXPECT_EQ(run(render + "--resume ck --spp 4" + small), 0) << said();
+  EXPECT_EQ(run(render + "--resume ck --plan all --spp 6" + small), 0) << said();
+}
+
 TEST_F(Program, NohupHoldsOffTheEndOfTheTerminal) {
   const std::string render = "\"$ajar\" render box.xml --integrator path --time 1s --log log -o a.exr" + small;
   EXPECT_EQ(run("trap '' HUP; " + stopped(render, "log", "HUP")), 0) << said();

@@ -217,8 +217,11 @@ TEST_F(Bench, AnotherReferenceIsRefused) {
   Picture image = read_picture(stem.string() + ".exr");
   image.pixels[0] += 1;
   write_exr(stem.string() + ".exr", image, {}, true);
+  const fs::path shown = options.folder / "images" / small()["scenes"][0]["name"] / "reference.exr";
+  const std::string before = kit::bytes_of(shown);
   EXPECT_NE(error_of(small()).find("p-seed0.json: was measured against another reference"), std::string::npos)
       << error_of(small());
+  EXPECT_TRUE(kit::bytes_of(shown) == before) << "what is refused changes nothing";
 }
 
 // A file that the scene includes is of the scene: neither a reference nor runs of another state of it count.

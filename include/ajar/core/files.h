@@ -35,6 +35,8 @@ void write_aside(const std::string& path, const void* bytes, size_t size);
 void write_text(const std::string& path, const std::string& text);
 /// Whether a file or folder of this name is there, as far as can be told.
 bool is_there(const std::string& path);
+/// The same of a regular file.
+bool is_file(const std::string& path);
 /// Makes a folder and those above it; one that is there already will do. Throws Error.
 void make_folder(const std::string& path);
 

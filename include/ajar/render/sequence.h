@@ -26,7 +26,13 @@ struct SequenceOptions {
 struct Carried {
   uint32_t frame = 0;  ///< of which these are the fields
   Fields fields;
+  uint64_t content = 0;  ///< Scene::content of that frame
+  uint64_t history = 0;  ///< checksum of the contents of all frames up to it, see go_on
 };
+
+/// Checksum of the contents of all frames up to one, of that up to the frame before; frames whose files are those of
+/// the frame before do not change it. before: 0 of the first frame.
+uint64_t go_on(uint64_t history, uint64_t before, uint64_t content);
 
 /// The seed of a frame's image, and that of the passes that teach it: independent of each other, so that fields never
 /// know the numbers of an image that they guide. Both are every frame's where numbers are, so that fields change as the
