@@ -31,7 +31,7 @@ struct Transfer {
 // says: whether what the file says of its gamma counts.
 Transfer transfer_of(const OIIO::ImageSpec& spec, const ImageOptions& options, bool says) {
   if (options.raw) return {1};
-  if (options.gamma > 0) return {options.gamma};
+  if (options.gamma != 0) return {std::max(options.gamma, 0.0f)};
   if (spec.format.basetype == OIIO::TypeDesc::HALF || spec.format.basetype == OIIO::TypeDesc::FLOAT ||
       spec.format.basetype == OIIO::TypeDesc::DOUBLE)
     return {1};

@@ -90,7 +90,7 @@ Rgb maximum(const Scene& scene, const Slot& slot, const Mesh* mesh = nullptr);
 /// How the numbers of a file become those of an image.
 struct ImageOptions {
   bool raw = false;        ///< as they stand
-  float gamma = 0;         ///< this exponent; 0: by the file (8- and 16-bit sRGB, float linear)
+  float gamma = 0;         ///< this exponent; below 0 sRGB, 0: by the file (8- and 16-bit sRGB, float linear)
   bool mend = false;       ///< those that are not finite become 0
   bool png_gamma = false;  ///< a PNG that says its gamma has that, as in Mitsuba 0.x; else all are sRGB
 };

@@ -219,24 +219,23 @@ bool comes_first(const std::string& a, const std::string& b) {
   return parts(a) < parts(b);
 }
 
-// The nested bsdfs: as many as asked for, in the order of the file, or, but for version 0.x, of their names where all
-// have one.
+// The nested bsdfs: as many as asked for, in the order of their names, where one without is called _arg_0, _arg_1 and
+// so on; in version 0.x in that of the file.
 void take_nested(Params& p, Material& m, size_t low, size_t high) {
   std::vector<std::pair<std::string, const Node*>> list;
-  bool named = !p.loader.document.old;
   for (size_t i = 0; i < p.node.children.size(); ++i) {
     const Node& meant = follow(p.loader, p.node.children[i]);
     if (meant.tag != "bsdf") continue;
     p.used[i] = true;
-    named &= !p.node.children[i].name.empty();
-    list.emplace_back(p.node.children[i].named, &meant);
+    const std::string& named = p.node.children[i].named;
+    list.emplace_back(named.empty() ? fmt::format("_arg_{}", i) : named, &meant);
   }
   if (list.size() < low || list.size() > high)
     fail(p.loader, p.node,
          fmt::format("needs {} nested bsdf{}, has {}",
                      low == high ? fmt::format("{}", low) : fmt::format("{} to {}", low, high), high == 1 ? "" : "s",
                      list.size()));
-  if (named)
+  if (!p.loader.document.old)
     std::stable_sort(list.begin(), list.end(),
                      [](const auto& a, const auto& b) { return comes_first(a.first, b.first); });
   for (size_t i = 0; i < list.size(); ++i) m.nested[i] = load_bsdf(p.loader, *list[i].second);

@@ -171,15 +171,15 @@ void note_mended(Loader& loader, const Node& node, const Image& image) {
 }  // namespace
 
 uint32_t load_image_file(Loader& loader, const Node& node, const std::string& path, bool raw, double gamma) {
-  if (gamma > 0 && std::abs(gamma - 1) < 1e-6) raw = true;
+  if (std::abs(gamma - 1) < 1e-6) raw = true;
   if (gamma > 100) fail(loader, node, fmt::format("gamma {} should be from 0 to 100", gamma));
-  const std::string key = fmt::format("{}|{}|{}|{}", raw, loader.lenient, raw ? 0 : std::max(gamma, 0.0), path);
+  const std::string key = fmt::format("{}|{}|{}|{}", raw, loader.lenient, raw ? 0 : std::max(gamma, -1.0), path);
   const auto found = loader.images.find(key);
   if (found != loader.images.end()) return found->second;
   const uint32_t index = uint32_t(loader.scene.images.size());
   const Image* kept = loader.cache ? find_value(loader.cache->images, key) : nullptr;
   try {
-    const ImageOptions options{raw, float(std::max(gamma, 0.0)), loader.lenient, loader.document.old};
+    const ImageOptions options{raw, float(gamma), loader.lenient, loader.document.old};
     loader.scene.images.push_back(kept ? *kept : load_image(path, options));
   } catch (const Error& error) {
     fail(loader, node, error.what());

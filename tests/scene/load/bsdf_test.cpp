@@ -227,6 +227,14 @@ TEST(Bsdf, Blend) {
   EXPECT_EQ(s.materials[s.materials[2].nested[0]].kind, MaterialKind::diffuse);
   s = load_inside(ten, {}, "0.6.0");
   EXPECT_EQ(s.materials[s.materials[2].nested[0]].kind, MaterialKind::plastic);
+  const auto first = [](const std::string& name, const std::string& version) {  // beside one without a name
+    const std::string named = fmt::format("<bsdf name='{}' type='plastic'/>", name);
+    const Scene scene = load_inside(bsdf("blendbsdf", named + bsdf("diffuse")), {}, version);
+    return scene.materials[scene.materials[2].nested[0]].kind;
+  };
+  EXPECT_EQ(first("first", "3.0.0"), MaterialKind::diffuse);
+  EXPECT_EQ(first("A", "3.0.0"), MaterialKind::plastic);
+  EXPECT_EQ(first("first", "0.6.0"), MaterialKind::plastic);
   EXPECT_SAYS(error_of(bsdf("blendbsdf", bsdf("diffuse"))), "needs 2 nested bsdfs, has 1");
 }
 

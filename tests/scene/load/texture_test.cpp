@@ -104,6 +104,9 @@ TEST(TextureFile, GammaOfAPngCountsInOldScenes) {
       "<bsdf type='diffuse'><texture name='reflectance' type='bitmap'><string name='filename' value='linear.png'/>"
       "</texture></bsdf>";
   EXPECT_NEAR(load_inside(text, {}, "0.6.0").images[0].decode[128], 128 / 255.0, 1e-6);
+  std::string srgb = text;
+  srgb.insert(srgb.find("</texture>"), "<float name='gamma' value='-1'/>");
+  EXPECT_NEAR(load_inside(srgb, {}, "0.6.0").images[0].decode[128], 0.21586, 1e-4);
   EXPECT_NEAR(load_inside(text).images[0].decode[128], 0.21586, 1e-4);
 }
 
