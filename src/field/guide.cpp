@@ -17,7 +17,7 @@ bool is_open(const Guide& g, const Vec3& w, const Vec3& local) {
 // |cos(ng, wi)| / |cos(ns, wi)| times the stored half: Veach's correction of the adjoint bsdf for bent normals.
 float adjoint(const Guide& g, const Vec3& wi, const Vec3& local, Mode mode) {
   if (!g.bent || mode == Mode::radiance) return 1;
-  return g.adjoint * std::abs(glm::dot(g.ng, wi) / local.z);  // (A1)
+  return g.adjoint * std::abs(glm::dot(g.ng, wi) / local.z);  // (P4)
 }
 
 // What a boundary over a base takes of the field's part: three times what it reflects at right angles, so that its own
@@ -91,7 +91,7 @@ void fetch(const Fields& fields, uint32_t cell) {
 
 void place(const Surface& surface, Guide& out) {
   const Fields& fields = *out.fields;
-  const Place at = find(fields.table, surface.p, glm::dot(surface.ng, out.wo) < 0 ? -surface.ng : surface.ng);
+  const Place at = find(fields.table, surface.p, facing(surface.ng, out.wo));
   out.cell = at.cell, out.missing = at.missing;
   if (at.cell != none) fetch(fields, at.cell);
 }

@@ -191,7 +191,7 @@ void record_next_event(const Scene& scene, const Guide& guide, LightChances& cha
 }
 
 void record_place(const Guide& guide, const Vec3& ng, Training& training, Sightings& sightings) {
-  if (guide.missing) record_missing(sightings, guide.missing, glm::dot(ng, guide.wo) < 0 ? -ng : ng);
+  if (guide.missing) record_missing(sightings, guide.missing, facing(ng, guide.wo));
   if (guide.cell != none) record_visit(training.of(guide.side), guide.cell);
 }
 

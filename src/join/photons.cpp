@@ -117,7 +117,7 @@ void add_photons(Photons& photons, const Subpath& light, Heuristic h, double inn
     p.p = v.p, p.s = s;
     p.wi = v.guide.wo, p.beta = v.beta;
     p.fixed = float(std::min(side.fixed, 1e37)), p.slope = float(std::min(side.slope, 1e37));
-    p.n = glm::dot(v.ng, v.guide.wo) < 0 ? -v.ng : v.ng;
+    p.n = facing(v.ng, v.guide.wo);
     p.straight = straight;
   }
 }

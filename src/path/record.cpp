@@ -148,7 +148,7 @@ void record_subpath(const Fields& fields, Training& training, Sightings& sightin
     if (fields.rule == Rule::returned) brought = brought_by(subpath, i, side, brought);
     passed = passed_by(fields, subpath, i, side, passed);
     if (connectable(b.guide)) {
-      if (b.guide.missing) record_missing(sightings, b.guide.missing, glm::dot(b.ng, b.guide.wo) < 0 ? -b.ng : b.ng);
+      if (b.guide.missing) record_missing(sightings, b.guide.missing, facing(b.ng, b.guide.wo));
       if (b.guide.cell != none) record_visit(own_tallies, b.guide.cell);
     }
     const Vertex& a = subpath[i - 1];

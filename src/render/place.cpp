@@ -205,7 +205,7 @@ double density_of_lights(const Job& job, const Vec3& p, const Vec3& ng, const Ve
   const Fields* fields = job.walk.fields;
   const Vpls& v = *job.vpls;
   if (!job.guided) return v.paths * v.even;
-  const uint32_t cell = find(fields->table, p, glm::dot(ng, w) < 0 ? -ng : ng).cell;
+  const uint32_t cell = find(fields->table, p, facing(ng, w)).cell;
   if (cell == none) return 0;
   const FieldCell& importance = fields->w.cells[cell];
   const double traced = double(v.paths) * double(importance.visits);

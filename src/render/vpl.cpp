@@ -98,7 +98,7 @@ void guide_way_back(const Job& job, const Surface& surface, Subpath& camera) {
 void find_cell(const Job& job, Vertex& v) {
   if (!job.guided || !connectable(v.guide)) return;
   v.guide.fields = job.walk.fields;
-  v.guide.cell = find(v.guide.fields->table, v.p, glm::dot(v.ng, v.guide.wo) < 0 ? -v.ng : v.ng).cell;
+  v.guide.cell = find(v.guide.fields->table, v.p, facing(v.ng, v.guide.wo)).cell;
 }
 
 void join_lights(Gathering& work, const Surface& surface) {

@@ -16,6 +16,9 @@ struct Frame {
   Vec3 to_world(const Vec3& v) const { return s * v.x + t * v.y + n * v.z; }
 };
 
+/// n or -n, whichever is on the side of w.
+inline Vec3 facing(const Vec3& n, const Vec3& w) { return glm::dot(n, w) < 0 ? -n : n; }
+
 /// Frame about unit n without a preferred tangent (Duff et al. 2017, Building an Orthonormal Basis, Revisited).
 inline Frame make_frame(const Vec3& n) {
   const float sign = std::copysign(1.0f, n.z);

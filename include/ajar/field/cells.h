@@ -28,8 +28,8 @@ struct CellCut {
   int32_t axis = 0, below = ~0, above = ~0;
 };
 
-/// A disk beside a wall, across all of the scene: what passes the wall passes the disk. It lies where paths through the
-/// wall are closest together.
+/// A disk beside a wall, across the scene or twice the part that cubes follow: what passes the wall passes the disk. It
+/// lies where paths through the wall are closest together.
 struct Portal {
   int32_t axis = 0;  ///< normal to it
   float wall = 0;    ///< where the wall is along the axis

@@ -13,7 +13,7 @@ enum class Guided : uint8_t { both, camera, light, neither };
 struct LearnOptions {
   Structure structure = Structure::adaptive;  ///< of fields that start from nothing
   Rule rule = Rule::expected;
-  size_t memory = size_t(8) << 20;  ///< bytes that all of it may take: four tenths before cells get no more
+  size_t memory = size_t(8) << 20;  ///< bytes that all of it may take: four tenths before small cells get no more
   float divide_cell = 600;          ///< vertices after which a cell is divided
   float divide_stratum = 0.03f;     ///< share of its cell's field above which a stratum is divided
   float trust = 32;                 ///< records after which half of the largest mix is given to the strata

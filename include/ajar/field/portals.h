@@ -10,7 +10,7 @@ inline constexpr size_t most_portals = 2;
 /// What ends within so many widths of a cube of level 0 from a portal's plane does not count as having come through.
 inline constexpr float portal_margin = 0.25f;
 
-/// Planes that the most cuts share, as disks across the scene's sphere; width: of the cubes that were cut.
+/// Planes that the most cuts share, as disks across a sphere; width: of the cubes that were cut.
 std::vector<Portal> find_portals(const std::vector<CellCut>& cuts, const Vec3& center, float radius, float width);
 /// Gives both fields strata for the portals of their table, that know nothing. False where they have them already.
 bool add_portals(Fields& fields);

@@ -1,5 +1,5 @@
 // Enters: samples of a pass, one per pixel, and splats.
-// Leaves: the running estimate with its variance. A pass is one sample of every pixel and as many light subpaths.
+// Leaves: the running estimate with its variance. A pass is one sample of every pixel, and light subpaths.
 #pragma once
 
 #include <algorithm>

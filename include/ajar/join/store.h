@@ -1,5 +1,5 @@
 // Enters: light subpaths of many samples.
-// Leaves: for a camera vertex, one of all their vertices to join, drawn by what it is expected to bring.
+// Leaves: for a camera vertex, some of all their vertices to join, drawn by what they are expected to bring.
 #pragma once
 
 #include <array>

@@ -38,7 +38,7 @@ struct LoadCache {
 
 struct LoadOptions {
   std::map<std::string, std::string> defines;  ///< -D name=value; a name that the scene does not know is an error
-  bool lenient = false;        ///< unknown elements become notes (unknown bsdf: grey diffuse; others left out)
+  bool lenient = false;                        ///< unknown elements become notes, replaced or left out (docs/scenes.md)
   std::optional<double> time;  ///< at which <animation>s are read; nothing: when the sensor's shutter opens, or 0
   LoadCache* cache = nullptr;  ///< read and filled, where given
 };

@@ -47,7 +47,7 @@ void bend_by_height(Resolver& r, const Material& m) {
   const Vec3 n = r.frame.n, &dpdu = r.surface.dpdu, &dpdv = r.surface.dpdv;
   const Vec3 u = dpdu + n * (slope.x - glm::dot(n, dpdu)), v = dpdv + n * (slope.y - glm::dot(n, dpdv));
   const Vec3 bent = glm::cross(u, v);
-  bend(r, glm::dot(bent, n) < 0 ? -bent : bent);
+  bend(r, facing(bent, n));
 }
 
 void bend_by_map(Resolver& r, const Material& m) {
