@@ -216,9 +216,8 @@ Lessons teach_frame(Work& w, int frame, const Stage& stage) {
                                          return !stop_asked();
                                        });
   if (!fields) interrupted(frame);
-  Carried next{uint32_t(frame), std::move(*fields), stage.scene->content};
-  next.history = w.carried ? go_on(w.carried->history, w.carried->content, next.content) : go_on(0, 0, next.content);
-  w.carried = std::move(next);
+  const FileHistory files = with_frame(w.carried ? w.carried->files : FileHistory{}, stage.scene->content);
+  w.carried = Carried{uint32_t(frame), std::move(*fields), files};
   lessons.seconds = wall_seconds() - wall, lessons.cpu_seconds = process_cpu_seconds() - cpu;
   return lessons;
 }
@@ -233,14 +232,12 @@ void tell_frame(const Work& w, int frame) {
 // Whether the frames that taught these fields have the files that they had then. Where this one has those of the first
 // frame, those between are not loaded for it.
 bool is_of_these_files(Work& w, const Carried& carried) {
-  uint64_t before = load_frame(w.shooting, 0)->content, history = go_on(0, 0, before);
-  if (load_frame(w.shooting, int(carried.frame))->content != carried.content) return false;
-  if (carried.content == before && carried.history == history) return true;
-  for (int f = 1; f <= int(carried.frame); ++f) {
-    const uint64_t content = load_frame(w.shooting, f)->content;
-    history = go_on(history, before, content), before = content;
-  }
-  return history == carried.history;
+  const auto content = [&](int frame) { return load_frame(w.shooting, frame)->content; };
+  FileHistory files = with_frame({}, content(0));
+  if (content(int(carried.frame)) != carried.files.content) return false;
+  if (files == carried.files) return true;
+  for (int f = 1; f <= int(carried.frame); ++f) files = with_frame(files, content(f));
+  return files == carried.files;
 }
 
 // From the first frame whose fields are needed to the last that is missing.
@@ -276,7 +273,8 @@ void render_frames(Work& w) {
 // What would stand in the way of the files to come.
 void check_outputs(const Work& w) {
   check_files(w.arguments, w.to_do.front());
-  for (const int frame : w.to_do) check_no_folders(w.arguments, frame), check_record(frame_name(w.pattern, frame));
+  check_no_folders(w.arguments, w.shooting.timeline.frames);
+  for (const int frame : w.to_do) check_record(frame_name(w.pattern, frame));
   if (w.carries) check_file(carried_name(w));
 }
 

@@ -48,8 +48,8 @@ void check_files(const AnimateArguments& a, int frame) {
   for (const Named& file : written(a, {frame, frame, frame + 1})) check_file(file.path);
 }
 
-void check_no_folders(const AnimateArguments& a, int frame) {
-  for (const Named& file : written(a, {frame, frame, frame + 1}))
+void check_no_folders(const AnimateArguments& a, const FrameRange& frames) {
+  for (const Named& file : written(a, frames))
     if (is_there(file.path) && !is_file(file.path)) check_file(file.path);
 }
 

@@ -12,8 +12,8 @@ namespace ajar {
 void check_apart(const AnimateArguments&, const FrameRange&, const Scene&, const LoadCache&);
 /// Throws Error where a file of the frame, of the figures or of the film could not be written.
 void check_files(const AnimateArguments&, int frame);
-/// The same, without trying any: for what has the name of a folder, or of no file.
-void check_no_folders(const AnimateArguments&, int frame);
+/// The same of all frames, but tries nothing unless there is a folder of the name, or what else is no file.
+void check_no_folders(const AnimateArguments&, const FrameRange&);
 /// Throws Error unless every frame of the range has its reference, sound and of the frame's size.
 void check_references(const AnimateArguments&, Shooting&);
 

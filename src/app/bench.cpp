@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ajar/core/error.h"
+#include "ajar/core/files.h"
 #include "ajar/film/picture.h"
 #include "ajar/render/render.h"
 #include "ajar/report/bench.h"
@@ -74,8 +75,7 @@ std::string command_of(const BenchArguments& a) {
 
 // The stress suite's cases are scenes that code builds; the program that has them is built with the tests.
 bool is_stress(const std::string& suite) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(suite, error)) return false;  // load_suite says what is wrong
+  if (!is_file(suite)) return false;  // load_suite says what is wrong
   const nlohmann::json json = nlohmann::json::parse(std::ifstream(suite), nullptr, false);
   return json.is_object() && json.value("cases", nlohmann::json()) == "stress";
 }

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ajar/core/error.h"
+#include "ajar/core/files.h"
 #include "ajar/film/pyramid.h"
 #include "ajar/report/account.h"
 #include "ajar/report/metrics.h"
@@ -132,7 +133,7 @@ Picture image_of(const RenderArguments& a, const Scene& scene, const Accel& acce
 
 // Whether the last line was cut, by a disk that was full, say.
 bool is_cut(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) return false;
+  if (!is_file(path)) return false;
   std::ifstream file(path, std::ios::binary);
   return file.seekg(-1, std::ios::end) && file.get() != '\n';
 }
@@ -202,7 +203,7 @@ void check_outputs(const RenderArguments& a) {
 void check_record(const std::string& image) {
   const std::string record = with_extension(image, ".json");
   std::error_code unknown;
-  if (!std::filesystem::is_regular_file(record, unknown) || std::filesystem::file_size(record, unknown) == 0) return;
+  if (!is_file(record) || std::filesystem::file_size(record, unknown) == 0) return;
   if (!is_record(record))
     throw Error(
         fmt::format("{}: is no record of a render, which would take its place beside {}; move it, or name "

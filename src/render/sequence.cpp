@@ -77,14 +77,15 @@ RenderState start_with(const Scene& scene, const RenderOptions& options, Fields 
   return state;
 }
 
-uint64_t go_on(uint64_t history, uint64_t before, uint64_t content) {
-  return content == before ? history : checksum(&content, sizeof content, history);
+FileHistory with_frame(const FileHistory& before, uint64_t content) {
+  if (content == before.content) return before;
+  return {content, checksum(&content, sizeof content, before.all)};
 }
 
 void save_carried(const std::string& path, const std::string& key, const Carried& carried) {
   write_file(path, carried_kind, [&](Writer& w) {
     w.key(key);
-    w.value(carried.frame), w.value(carried.content), w.value(carried.history);
+    w.value(carried.frame), w.value(carried.files);
     write(w, carried.fields);
   });
 }
@@ -97,7 +98,7 @@ Carried load_carried(const std::string& path, const std::string& key) {
   if (stored != key)
     throw Error(fmt::format("{}: fields of another animation ({}); this one is {}; remove the file, or write elsewhere",
                             path, stored, key));
-  r.value(carried.frame), r.value(carried.content), r.value(carried.history);
+  r.value(carried.frame), r.value(carried.files);
   read(r, carried.fields);
   r.finish();
   return carried;

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "ajar/core/error.h"
+#include "ajar/core/files.h"
 #include "ajar/film/picture.h"
 #include "ajar/report/curves.h"
 #include "markup.h"
@@ -47,8 +48,7 @@ struct Embedder {
   /// Where the file is; throws Error where it is not.
   std::string find(const std::string& name, const std::string& where) const {
     const std::filesystem::path path = dir / name;
-    std::error_code none_such;
-    if (!std::filesystem::is_regular_file(path, none_such))
+    if (!is_file(path.string()))
       throw Error(
           fmt::format("{}: there is no such file, but {} in {} names it; run the bench again, or take it out there",
                       path.string(), where, (dir / "results.json").string()));

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "ajar/core/error.h"
+#include "ajar/core/files.h"
 #include "element.h"
 
 namespace ajar {
@@ -197,9 +198,8 @@ fs::path shared_scenes(const fs::path& suite) {
 /// Where a file of the suite is; empty: nowhere.
 fs::path locate(const fs::path& suite, const std::string& name) {
   const fs::path shared = shared_scenes(suite);
-  std::error_code none_such;
   for (const fs::path& folder : {suite.parent_path(), shared, shared / ".."})
-    if (fs::is_regular_file(folder / name, none_such)) return (folder / name).lexically_normal();
+    if (is_file((folder / name).string())) return (folder / name).lexically_normal();
   return {};
 }
 

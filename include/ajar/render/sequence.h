@@ -22,17 +22,21 @@ struct SequenceOptions {
   float doubt = 0.125f;  ///< share of it that is kept near what moved
 };
 
+/// Which files the frames up to one had.
+struct FileHistory {
+  uint64_t content = 0;  ///< Scene::content of that frame
+  uint64_t all = 0;      ///< checksum of the contents of all of them, each change once
+  bool operator==(const FileHistory&) const = default;
+};
+/// With the next frame.
+FileHistory with_frame(const FileHistory& before, uint64_t content);
+
 /// What is carried from frame to frame.
 struct Carried {
   uint32_t frame = 0;  ///< of which these are the fields
   Fields fields;
-  uint64_t content = 0;  ///< Scene::content of that frame
-  uint64_t history = 0;  ///< checksum of the contents of all frames up to it, see go_on
+  FileHistory files;  ///< that taught them
 };
-
-/// Checksum of the contents of all frames up to one, of that up to the frame before; frames whose files are those of
-/// the frame before do not change it. before: 0 of the first frame.
-uint64_t go_on(uint64_t history, uint64_t before, uint64_t content);
 
 /// The seed of a frame's image, and that of the passes that teach it: independent of each other, so that fields never
 /// know the numbers of an image that they guide. Both are every frame's where numbers are, so that fields change as the

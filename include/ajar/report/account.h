@@ -13,8 +13,8 @@ namespace ajar {
 /// timed samples) and "rebuild" (making the next fields between passes).
 nlohmann::ordered_json phases_json(double seconds, double between_passes, const Ledger& ledger);
 
-/// Adds to a record "mean_path_edges", "light_subpaths_per_sample", "camera_samples_of_a_pass" and "goes_on" where
-/// they are known, "zero_contribution_paths", "tracing" (shares of the tracing time), "fields" where anything is
+/// Adds to a record "mean_path_edges", "light_subpaths_per_sample", "camera_samples_of_a_pass" where guided passes have
+/// them, "goes_on", "zero_contribution_paths", "tracing" (shares of the tracing time), "fields" where anything is
 /// learned, "caustics", "merges" where there are any, and "strategies": a list of {s, t, joins, rays, visible, energy,
 /// time}, energy as a share of the image's, time as a share of tracing.
 void add_account(nlohmann::ordered_json& record, const RenderState& state);
