@@ -1,6 +1,7 @@
 // ajar animate and files: what each frame has of its own, that nothing is written over what is read, and what is told
 // before the work.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "animate_stage.h"
