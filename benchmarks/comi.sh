@@ -1,30 +1,27 @@
-#!/bin/sh
+#!/usr/bin/env bash
 # The tables of Comi 2019 (4.2 and 4.3) on our scenes: 32 spp, 256x256, no next-event estimation; cosine sampling
 # against fields learned in a separate pass and then frozen. Usage: comi.sh AJAR FOLDER [SEEDS]
-set -e
+set -euo pipefail
 ajar=$1 folder=$2 seeds=${3:-5}
 root=$(dirname "$0")/..
 mkdir -p "$folder"
 for scene in box sunrise door; do
   file=$root/scenes/$scene/$scene.xml
   reference=$folder/$scene-reference.exr
-  [ -f "$reference" ] || "$ajar" render "$file" -q --size 256x256 --max-depth 20 --integrator bdpt --spp 128 --seed 999 -o "$reference"
+  [[ -f $reference ]] || "$ajar" render "$file" -q --size 256x256 --max-depth 20 --integrator bdpt --spp 128 --seed 999 -o "$reference"
   for method in cosine grid probes adaptive; do
     fields=$folder/$scene-$method.fields
-    if [ $method != cosine ]; then
-      learn="--integrator guided-path --no-next-event --train 64 --field-rate visits"
-      "$ajar" render "$file" -q --size 128x128 --max-depth 20 $learn --field-structure $method --spp 1 --seed 99 \
+    how=(--integrator path --no-next-event)
+    if [[ $method != cosine ]]; then
+      how=(--integrator guided-path --no-next-event --train 64 --field-rate visits)
+      "$ajar" render "$file" -q --size 128x128 --max-depth 20 "${how[@]}" --field-structure "$method" --spp 1 --seed 99 \
         --save-fields "$fields" -o "$folder/trained.exr"
-      how="$learn --load-fields $fields"
-    else
-      how="--integrator path --no-next-event"
+      how+=(--load-fields "$fields")
     fi
-    seed=1
-    while [ $seed -le "$seeds" ]; do
+    for ((seed = 1; seed <= seeds; seed++)); do
       image=$folder/$scene-$method-$seed
-      "$ajar" render "$file" -q --size 256x256 --max-depth 20 --roulette-depth 6 $how --spp 32 --seed $seed -o "$image.exr"
+      "$ajar" render "$file" -q --size 256x256 --max-depth 20 --roulette-depth 6 "${how[@]}" --spp 32 --seed $seed -o "$image.exr"
       "$ajar" compare "$image.exr" "$reference" > "$image.error.json"
-      seed=$((seed + 1))
     done
   done
 done

@@ -1,26 +1,24 @@
-#!/bin/sh
+#!/usr/bin/env bash
 # Dahm and Keller 2017, figures 7 and 8, on scenes/ajar: path length, share of paths that bring something, and error of
 # path tracing without learning and guided by fields of each structure and rule, learned in 32 passes and then frozen.
 # Usage: rules.sh AJAR FOLDER [SEEDS]
-set -e
+set -euo pipefail
 ajar=$1 folder=$2 seeds=${3:-3}
 root=$(dirname "$0")/..
-common="$root/scenes/ajar/ajar.xml -q -D door=40 --size 320x180 --max-depth 10"
+common=("$root/scenes/ajar/ajar.xml" -q -D door=40 --size 320x180 --max-depth 10)
 mkdir -p "$folder"
 for method in path adaptive-expected adaptive-max adaptive-return grid-expected grid-max probes-expected probes-max; do
-  structure=${method%-*} rule=${method#*-} how="--integrator path"
-  if [ $method != path ]; then
-    how="--integrator guided-path --train 32 --field-rule $rule"
-    "$ajar" render $common $how --field-structure $structure --spp 1 --seed 99 --save-fields "$folder/$method.fields" \
-      -o "$folder/trained.exr"
-    how="$how --load-fields $folder/$method.fields"
+  structure=${method%-*} rule=${method#*-} how=(--integrator path)
+  if [[ $method != path ]]; then
+    how=(--integrator guided-path --train 32 --field-rule "$rule")
+    "$ajar" render "${common[@]}" "${how[@]}" --field-structure "$structure" --spp 1 --seed 99 \
+      --save-fields "$folder/$method.fields" -o "$folder/trained.exr"
+    how+=(--load-fields "$folder/$method.fields")
   fi
-  seed=1
-  while [ $seed -le "$seeds" ]; do
-    "$ajar" render $common $how --spp 32 --seed $seed -o "$folder/$method-$seed.exr"
+  for ((seed = 1; seed <= seeds; seed++)); do
+    "$ajar" render "${common[@]}" "${how[@]}" --spp 32 --seed $seed -o "$folder/$method-$seed.exr"
     "$ajar" compare "$folder/$method-$seed.exr" "$root/benchmarks/references/ajar-40-320x180-depth10.exr" \
       > "$folder/$method-$seed.error.json"
-    seed=$((seed + 1))
   done
 done
 python3 - "$folder" "$seeds" <<'TABLE'
