@@ -7,11 +7,11 @@
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "ajar/core/bytes.h"
 #include "ajar/core/error.h"
 #include "ajar/core/files.h"
+#include "ajar/core/parallel.h"
 #include "animate_files.h"
 #include "animate_options.h"
 #include "commands.h"
@@ -158,7 +158,7 @@ Run frame_run(const Work& w, int frame, const Stage& stage) {
   run.options = frame_options(w, frame, *stage.scene);
   run.options.seed = image_seed(w.sequence, w.options.seed, uint32_t(frame));
   run.light_choice = usual_light_choice(run.options.integrator);
-  run.threads = w.options.threads > 0 ? w.options.threads : int(std::thread::hardware_concurrency());
+  run.threads = w.options.threads > 0 ? w.options.threads : processor_count();
   run.load_seconds = stage.load_seconds, run.load_cpu = stage.load_cpu;
   run.build_seconds = stage.build_seconds, run.build_cpu = stage.build_cpu;
   return run;

@@ -7,10 +7,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <functional>
-#include <thread>
 
 #include "ajar/core/error.h"
 #include "ajar/core/files.h"
+#include "ajar/core/parallel.h"
 #include "arguments.h"
 #include "commands.h"
 #include "outputs.h"
@@ -237,7 +237,7 @@ Run run_of(const RenderArguments& a, Scene& scene) {
   run.load_fields = a.load_fields, run.save_fields = a.save_fields;
   run.planned = plans(a, scene);
   run.options = render_options(a, scene, run.planned);
-  run.threads = a.threads > 0 ? a.threads : int(std::thread::hardware_concurrency());
+  run.threads = a.threads > 0 ? a.threads : processor_count();
   run.triangles = count_triangles(scene);
   return run;
 }

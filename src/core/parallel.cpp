@@ -19,8 +19,10 @@ struct Threads::Arena {
   std::optional<tbb::global_control> most;
 };
 
+int processor_count() { return tbb::info::default_concurrency(); }
+
 Threads::Threads(int count) {
-  const int processors = tbb::info::default_concurrency();
+  const int processors = processor_count();
   if (count <= 0) count = processors;
   arena_.reset(new Arena(count));
   if (count > processors) arena_->most.emplace(tbb::global_control::max_allowed_parallelism, size_t(count));

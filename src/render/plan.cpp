@@ -7,9 +7,9 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
-#include <thread>
 
 #include "ajar/core/error.h"
+#include "ajar/core/parallel.h"
 
 namespace ajar {
 namespace {
@@ -29,7 +29,7 @@ double pixels_of(const Camera& camera) { return double(camera.crop_width) * came
 
 // CPU seconds; infinite where a target for the noise alone ends the render.
 double budget_of(const RenderOptions& o, double pixels) {
-  const double threads = o.threads > 0 ? o.threads : std::max(1u, std::thread::hardware_concurrency());
+  const double threads = o.threads > 0 ? o.threads : processor_count();
   double most = infinity;
   if (o.cpu_seconds > 0) most = std::min(most, o.cpu_seconds);
   if (o.seconds > 0) most = std::min(most, o.seconds * threads);

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <ctime>
 #include <fstream>
-#include <thread>
 
+#include "ajar/core/parallel.h"
 #include "ajar/report/bench.h"
 
 namespace ajar {
@@ -189,7 +189,7 @@ Json machine_json(int threads) {
   const std::string compiler = "g++ " __VERSION__;
 #endif
   return {{"cpu", first_value("/proc/cpuinfo", "model name")},
-          {"threads", threads > 0 ? threads : int(std::thread::hardware_concurrency())},
+          {"threads", threads > 0 ? threads : processor_count()},
           {"memory_bytes", memory},
           {"system", fmt::format("{} {} {}", name.sysname, name.release, name.machine)},
           {"compiler", compiler}};

@@ -109,6 +109,12 @@ TEST_F(Program, CheckpointsOfWhatLearnsNothingGoOn) {
   EXPECT_EQ(run(render + "--resume ck --plan all --spp 6" + small), 0) << said();
 }
 
+TEST_F(Program, PinnedProgramsCountTheProcessorsThatAreTheirs) {
+  const std::string mine = "$(taskset -cp $$ | sed 's/.*: //; s/[-,].*//')";
+  ASSERT_EQ(run("taskset -c " + mine + " \"$ajar\" render box.xml --spp 1 -o a.exr" + small), 0) << said();
+  EXPECT_NE(kit::bytes_of(folder / "a.json").find("\"threads\": 1,"), std::string::npos);
+}
+
 TEST_F(Program, NohupHoldsOffTheEndOfTheTerminal) {
   const std::string render = "\"$ajar\" render box.xml --integrator path --time 1s --log log -o a.exr" + small;
   EXPECT_EQ(run("trap '' HUP; " + stopped(render, "log", "HUP")), 0) << said();

@@ -20,10 +20,13 @@
 
 namespace ajar {
 
+/// As many as this process may use at a time: an affinity mask counts.
+int processor_count();
+
 /// A number of threads that work together; loops that begin inside run() use these and no others.
 class Threads {
  public:
-  explicit Threads(int count);  ///< 0: as many as the machine has processors
+  explicit Threads(int count);  ///< 0: processor_count()
   ~Threads();
   Threads(const Threads&) = delete;
   Threads& operator=(const Threads&) = delete;
