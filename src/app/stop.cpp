@@ -25,12 +25,16 @@ void ask(int signal) {
   }
 }
 
+void catch_unless_ignored(int signal) {
+  if (std::signal(signal, ask) == SIG_IGN) std::signal(signal, SIG_IGN);
+}
+
 }  // namespace
 
 void catch_stop() {
-  std::signal(SIGINT, ask);
-  std::signal(SIGTERM, ask);
-  if (std::signal(SIGHUP, ask) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
+  std::signal(SIGINT, ask);  // in any case: shells ignore it for all that scripts leave to the background
+  catch_unless_ignored(SIGTERM);
+  catch_unless_ignored(SIGHUP);  // nohup
 }
 
 bool stop_asked() { return asked != 0; }

@@ -115,9 +115,11 @@ TEST_F(Program, PinnedProgramsCountTheProcessorsThatAreTheirs) {
   EXPECT_NE(kit::bytes_of(folder / "a.json").find("\"threads\": 1,"), std::string::npos);
 }
 
-TEST_F(Program, NohupHoldsOffTheEndOfTheTerminal) {
+TEST_F(Program, NohupHoldsOffTheEndOfTheTerminalAndATrapTheEndOfAService) {
   const std::string render = "\"$ajar\" render box.xml --integrator path --time 1s --log log -o a.exr" + small;
   EXPECT_EQ(run("trap '' HUP; " + stopped(render, "log", "HUP")), 0) << said();
+  fs::remove(folder / "log");
+  EXPECT_EQ(run("trap '' TERM; " + stopped(render, "log", "TERM")), 0) << said();
 }
 
 TEST_F(Program, InterruptedBenchesGoOn) {
