@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "ajar/core/error.h"
 
@@ -68,7 +69,8 @@ void write_direct(const std::string& path, const std::function<void(Sink&)>& wri
 /// Where a file will be.
 struct Place {
   std::string target;
-  bool direct = false;  ///< it is there, and no regular file
+  bool direct = false;         ///< it is there, and no regular file
+  std::optional<mode_t> mode;  ///< permissions of what is there
 };
 
 // The end of a chain of symbolic links whose file is not there yet.
@@ -91,14 +93,17 @@ Place place_of(const std::string& path) {
   std::error_code ignored;
   std::string target = exists ? std::filesystem::canonical(path, ignored).string() : end_of_links(path);
   if (target.empty()) target = path;
-  return {target, exists && !S_ISREG(old.st_mode)};
+  Place place{target, exists && !S_ISREG(old.st_mode), {}};
+  if (exists) place.mode = old.st_mode & 0777;
+  return place;
 }
 
-/// Opens a temporary file that was not there, beside the target; aside becomes its name.
-int open_aside(const std::string& path, const std::string& target, std::string& aside) {
+/// Opens a temporary file that was not there, beside the target; aside becomes its name. mode: its permissions, but for
+/// what the process's mask takes.
+int open_aside(const std::string& path, const std::string& target, std::string& aside, mode_t mode = 0666) {
   for (int tries = 0;; ++tries) {
     aside = target + temporary_suffix();
-    const int file = ::open(aside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    const int file = ::open(aside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
     if (file >= 0) return file;
     if (errno != EEXIST || tries == 100) fail(path, errno);
   }
@@ -143,7 +148,8 @@ void write_aside(const std::string& path, const std::function<void(Sink&)>& writ
   const Place place = place_of(path);
   if (place.direct) return write_direct(path, write);
   std::string aside;
-  const int file = open_aside(path, place.target, aside);
+  const int file = open_aside(path, place.target, aside, place.mode.value_or(0666));
+  if (place.mode) ::fchmod(file, *place.mode);  // not every disk knows permissions
   int error = 0;
   try {
     error = fill(file, true, write);

@@ -112,6 +112,15 @@ TEST_F(Files, LinksAreFollowedWhetherTheirFilesAreThereOrNot) {
   EXPECT_NE(checked(file("e")).find("cannot be written"), std::string::npos);
 }
 
+TEST_F(Files, ReplacedOnesLeaveTheirPermissions) {
+  write_text(file("a"), "old");
+  for (const auto mode : {fs::perms(0600), fs::perms(0666), fs::perms(0440)}) {
+    fs::permissions(file("a"), mode);
+    write_text(file("a"), "new");
+    EXPECT_EQ(fs::status(file("a")).permissions(), mode);
+  }
+}
+
 TEST_F(Files, FoldersAreMadeWhereTheyAreWrittenTo) {
   EXPECT_EQ(checked(file("a/b/c")), "");
   EXPECT_EQ(count(), 0u) << "tried alone";

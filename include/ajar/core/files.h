@@ -27,9 +27,9 @@ std::string target_of(const std::string& path);
 void make_folder_of(const std::string& path);
 
 /// Calls write for a temporary file in the same folder, flushes it to the disk and renames it. A folder that is not
-/// there is made. A symbolic link stays, and what it leads to is written; a name that exists and is no regular file
-/// (/dev/null, a pipe) is written to as it is. Throws Error that names file, cause and cure; then no temporary file is
-/// left, and a file of that name is as it was.
+/// there is made. A file that is replaced leaves its permissions. A symbolic link stays, and what it leads to is
+/// written; a name that exists and is no regular file (/dev/null, a pipe) is written to as it is. Throws Error that
+/// names file, cause and cure; then no temporary file is left, and a file of that name is as it was.
 void write_aside(const std::string& path, const std::function<void(Sink&)>& write);
 void write_aside(const std::string& path, const void* bytes, size_t size);
 void write_text(const std::string& path, const std::string& text);
