@@ -131,7 +131,7 @@ std::string temporary_suffix() {
 }
 
 void Sink::bytes(const void* data, size_t size) {
-  if (error == 0 && std::fwrite(data, 1, size, file) != size) error = errno;
+  if (error == 0 && std::fwrite(data, 1, size, file) != size) error = errno != 0 ? errno : EIO;
 }
 
 std::string target_of(const std::string& path) { return place_of(path).target; }
