@@ -182,11 +182,10 @@ Stage set_up(Shooting& s, int frame, const Stage* before) {
 std::optional<Carried> find_carried(const std::string& folder, const std::string& key, int last,
                                     const std::function<bool(const Carried&)>& suits) {
   std::optional<Carried> best;
-  std::error_code none_such;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, none_such)) {
-    if (entry.path().extension() != ".fields") continue;
+  for (const fs::path& path : files_in(folder)) {
+    if (path.extension() != ".fields") continue;
     try {
-      Carried c = load_carried(entry.path().string(), key);
+      Carried c = load_carried(path.string(), key);
       if (int(c.frame) <= last && (!best || c.frame > best->frame) && suits(c)) best = std::move(c);
     } catch (const Error&) {
       // of another animation, or damaged: what it holds is learned again

@@ -22,10 +22,8 @@ void splat(const Film& film, const Strategy& c, Pyramid::Layer& layer) {
 
 void clear_layers(const std::string& folder) {
   std::error_code ignored;
-  std::vector<std::filesystem::path> old;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
-    if (is_layer(entry.path().filename().string())) old.push_back(entry.path());
-  for (const std::filesystem::path& path : old) std::filesystem::remove(path, ignored);
+  for (const std::filesystem::path& path : files_in(folder))
+    if (is_layer(path.filename().string())) std::filesystem::remove(path, ignored);
 }
 
 }  // namespace

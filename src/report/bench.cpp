@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <set>
-
 #include "ajar/core/error.h"
 #include "ajar/core/files.h"
 #include "ajar/film/pyramid.h"
@@ -167,14 +165,11 @@ void make_techniques(Bench& bench, const Stand& stand, const LoadedScene& loaded
 
 Json techniques_json(const Bench& bench, const Stand& stand, const Method& method) {
   const fs::path relative = fs::path("techniques") / stand.scene->name / method.name;
-  std::error_code none_such;
-  std::set<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(bench.options.folder / relative, none_such))
-    files.insert(entry.path().filename());
   Json list = Json::array();
-  for (const fs::path& file : files) {
+  for (const fs::path& path : files_in((bench.options.folder / relative).string())) {
     int s = 0, t = 0;
     char kind = 0;
+    const fs::path file = path.filename();
     const std::string stem = file.stem().string();
     if (!is_layer(file.string()) || stem.ends_with("-raw")) continue;
     std::sscanf(stem.c_str(), "%c%dt%d", &kind, &s, &t);

@@ -134,6 +134,13 @@ TEST_F(Files, FoldersAreMadeWhereTheyAreWrittenTo) {
   }
 }
 
+TEST_F(Files, OfAFolderAreInOrder) {
+  for (const char* name : {"b", "a", "c"}) write_text(file(name), "");
+  EXPECT_EQ(files_in(folder.string()), (std::vector<fs::path>{file("a"), file("b"), file("c")}));
+  EXPECT_TRUE(files_in(file("none")).empty());
+  EXPECT_TRUE(files_in(file("a")).empty());
+}
+
 TEST_F(Files, AStreamThatCannotBeOpenedIsAnError) {
   out_of_streams = true;
   const std::string said = error_of([&] { write_text(file("a"), "text"); });

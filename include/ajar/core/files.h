@@ -4,8 +4,10 @@
 
 #include <cstddef>
 #include <cstdio>
+#include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace ajar {
 
@@ -37,6 +39,8 @@ void write_text(const std::string& path, const std::string& text);
 bool is_there(const std::string& path);
 /// The same of a regular file.
 bool is_file(const std::string& path);
+/// Names of all that lies in a folder, in order, with the folder's before them; of what cannot be read as much as can.
+std::vector<std::filesystem::path> files_in(const std::string& folder);
 /// Makes a folder and those above it; one that is there already will do. Throws Error.
 void make_folder(const std::string& path);
 
