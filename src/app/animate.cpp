@@ -14,6 +14,7 @@
 #include "ajar/core/parallel.h"
 #include "animate_files.h"
 #include "animate_options.h"
+#include "command_threads.h"
 #include "commands.h"
 #include "frames.h"
 #include "outputs.h"
@@ -369,7 +370,10 @@ void add_animate(CLI::App& app) {
   auto a = std::make_shared<AnimateArguments>();
   CLI::App* c = app.add_subcommand("animate", "Render the frames of an animation (docs/animation.md)");
   add_options(*c, *a);
-  c->callback([a] { run_animate(*a); });
+  c->callback([a] {
+    const CommandThreads threads(a->threads);
+    run_animate(*a);
+  });
 }
 
 }  // namespace ajar

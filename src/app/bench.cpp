@@ -19,6 +19,7 @@
 #include "ajar/report/page.h"
 #include "apart.h"
 #include "arguments.h"
+#include "command_threads.h"
 #include "commands.h"
 #include "options.h"
 #include "progress.h"
@@ -153,7 +154,10 @@ void add_bench(CLI::App& app) {
                 "folder of references that are made once (default: the folder references beside the suite)");
   add_threads(*c, a->threads);
   c->add_flag("-q,--quiet", a->quiet, "no progress, no notes");
-  c->callback([a] { run_bench_command(*a); });
+  c->callback([a] {
+    const CommandThreads threads(a->threads);
+    run_bench_command(*a);
+  });
 }
 
 }  // namespace ajar

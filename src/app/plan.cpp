@@ -9,6 +9,7 @@
 
 #include "ajar/scene/load.h"
 #include "arguments.h"
+#include "command_threads.h"
 #include "commands.h"
 #include "options.h"
 #include "planning.h"
@@ -64,7 +65,10 @@ void add_plan(CLI::App& app) {
   add_time(*c, a->at);
   c->add_flag("--json", a->json, "for machines");
   c->add_flag("--lenient", a->lenient, "leave out what the loader does not know, with a note");
-  c->callback([a] { run_plan(*a); });
+  c->callback([a] {
+    const CommandThreads threads(a->threads);
+    run_plan(*a);
+  });
 }
 
 }  // namespace ajar

@@ -12,6 +12,7 @@
 #include "ajar/core/files.h"
 #include "ajar/core/parallel.h"
 #include "arguments.h"
+#include "command_threads.h"
 #include "commands.h"
 #include "outputs.h"
 #include "progress.h"
@@ -284,7 +285,10 @@ void add_render(CLI::App& app) {
   auto a = std::make_shared<RenderArguments>();
   CLI::App* c = app.add_subcommand("render", "Render a scene to an EXR image");
   add_options(*c, *a);
-  c->callback([a] { run_render(*a); });
+  c->callback([a] {
+    const CommandThreads threads(a->threads);
+    run_render(*a);
+  });
 }
 
 }  // namespace ajar

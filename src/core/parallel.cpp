@@ -33,6 +33,15 @@ void Threads::run(void (*call)(const void*), const void* f) {
   arena_->arena.execute([&] { call(f); });
 }
 
+struct ThreadLimit::Control {
+  tbb::global_control most;
+};
+
+ThreadLimit::ThreadLimit(int count) {
+  if (count > 0) control_.reset(new Control{{tbb::global_control::max_allowed_parallelism, size_t(count)}});
+}
+ThreadLimit::~ThreadLimit() = default;
+
 uint32_t thread_slot() { return uint32_t(tbb::this_task_arena::current_thread_index()); }
 
 void detail::run_ranges(size_t n, size_t grain, void (*call)(void* loop, size_t from, size_t to), void* loop) {

@@ -114,6 +114,15 @@ bool is_encoded(const OIIO::ImageInput& input, int channel) {
 
 }  // namespace
 
+PictureThreads::PictureThreads(int count) {
+  if (count <= 0 || !OIIO::getattribute("threads", before_) || !OIIO::getattribute("exr_threads", exr_before_)) return;
+  OIIO::attribute("threads", count), OIIO::attribute("exr_threads", count);
+}
+
+PictureThreads::~PictureThreads() {
+  if (before_ > 0) OIIO::attribute("threads", before_), OIIO::attribute("exr_threads", exr_before_);
+}
+
 void write_exr(const std::string& path, const Picture& picture, const Metadata& metadata, bool half) {
   require_sound(path, picture);
   OIIO::ImageSpec spec(picture.width, picture.height, picture.channels(), OIIO::TypeDesc::FLOAT);

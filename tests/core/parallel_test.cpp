@@ -72,6 +72,22 @@ TEST(Parallel, OneThreadIsTheCaller) {
   one.run([&] { parallel_for(100, [&](int) { EXPECT_EQ(std::this_thread::get_id(), caller); }); });
 }
 
+// In a thread of its own, whose loops no worker is in yet.
+TEST(Parallel, ALimitHoldsForAllLoopsAsLongAsItLives) {
+  {
+    const ThreadLimit none(0), one(1);
+    std::thread([] {
+      const auto caller = std::this_thread::get_id();
+      parallel_for(50, [&](int) {
+        EXPECT_EQ(std::this_thread::get_id(), caller);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      });
+    }).join();
+  }
+  Threads threads(2);
+  meet(threads, 2);
+}
+
 TEST(Parallel, ThrowsOnWhatACallThrows) {
   Threads threads(2);
   const auto loop = [&] {

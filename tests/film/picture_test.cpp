@@ -154,6 +154,20 @@ TEST_F(PictureFile, SameBytesTwice) {
   EXPECT_EQ(OIIO::ImageInput::open(file("a.exr"))->spec().get_string_attribute("compression"), "zip");
 }
 
+TEST_F(PictureFile, ThreadsAreLimitedForAWhile) {
+  const auto counts = [] {
+    std::array<int, 2> found{};
+    OIIO::getattribute("threads", found[0]), OIIO::getattribute("exr_threads", found[1]);
+    return found;
+  };
+  const std::array<int, 2> before = counts(), three = {3, 3};
+  {
+    const PictureThreads threads(3), as_they_are(0);
+    EXPECT_EQ(counts(), three);
+  }
+  EXPECT_EQ(counts(), before);
+}
+
 TEST_F(PictureFile, ExistingFileIsReplacedAndLinksAreFollowed) {
   write_text(file("a.txt"), "old");
   fs::create_symlink(file("a.txt"), file("link.txt"));

@@ -42,6 +42,20 @@ class Threads {
   std::unique_ptr<Arena> arena_;
 };
 
+/// As long as it lives no more than so many threads of the process work in loops, whoever begins them, the ray tracer's
+/// too; of several the least count holds. Sees to no more than the number: loops run where they would.
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(int count);  ///< 0: none
+  ~ThreadLimit();
+  ThreadLimit(const ThreadLimit&) = delete;
+  ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+ private:
+  struct Control;
+  std::unique_ptr<Control> control_;
+};
+
 /// Of the threads at work in one arena each has a slot of its own, 0 .. count - 1, for as long as one call of a loop's
 /// function lasts.
 uint32_t thread_slot();

@@ -25,6 +25,18 @@ struct Picture {
 
 using Metadata = std::map<std::string, std::variant<std::string, double>>;
 
+/// As long as it lives OpenImageIO and OpenEXR read and write with so many threads. Not for several at a time.
+class PictureThreads {
+ public:
+  explicit PictureThreads(int count);  ///< 0: as many as before
+  ~PictureThreads();
+  PictureThreads(const PictureThreads&) = delete;
+  PictureThreads& operator=(const PictureThreads&) = delete;
+
+ private:
+  int before_ = 0, exr_before_ = 0;
+};
+
 /// Writes channels and metadata ("ajar:seed" ..., names as given) to an OpenEXR file, ZIP-compressed, float or half;
 /// the same arguments give the same bytes. half: a channel that holds a finite value beyond the range of half (65504)
 /// stays float, so that nothing turns into infinity; so does one whose largest value is below 1/16, so that what is dim
