@@ -76,6 +76,16 @@ void set_pilot_size(Camera& camera, double budget) {
   scale_size(camera, std::sqrt(wanted / full));
 }
 
+// Puts a scene's camera back.
+struct CameraKeeper {
+  explicit CameraKeeper(Scene& of) : scene(of), camera(of.camera) {}
+  ~CameraKeeper() { scene.camera = camera; }
+  CameraKeeper(const CameraKeeper&) = delete;
+  CameraKeeper& operator=(const CameraKeeper&) = delete;
+  Scene& scene;
+  const Camera camera;
+};
+
 std::string describe(const Pilot& p) {
   if (p.passes == 0) return "the pilot saw nothing to compare";
   return fmt::format("path tracing leaves {:.{}f} times the error after equal time{}", p.ratio, p.ratio < 10 ? 2 : 0,
@@ -112,9 +122,9 @@ Plan make_plan(const Scene& scene, const RenderOptions& options) {
 void run_pilot(Scene& scene, const Accel& accel, const RenderOptions& options, const Monitor& monitor, Plan& plan) {
   if (plan.integrator != "guided-bdpt") return;
   const double cpu = process_cpu_seconds();
-  const Camera camera = scene.camera;
+  const CameraKeeper keeper(scene);
   Pilot p;
-  p.budget = budget_of(options, pixels_of(camera));
+  p.budget = budget_of(options, pixels_of(scene.camera));
   set_pilot_size(scene.camera, p.budget < infinity ? p.budget : first_guess);
   p.width = scene.camera.crop_width, p.height = scene.camera.crop_height;
   RenderOptions small = options;
@@ -124,7 +134,6 @@ void run_pilot(Scene& scene, const Accel& accel, const RenderOptions& options, c
   bool go_on = true;
   render(scene, accel, small, state,
          [&](const RenderState& now) { return (go_on = !monitor || monitor(now)) && !now.plain.settled; });
-  scene.camera = camera;
   if (!go_on) return;
   const Plain& plain = state.plain;
   p.passes = plain.ratio > 0 ? plain.passes : 0, p.ratio = plain.ratio;

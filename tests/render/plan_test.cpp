@@ -34,6 +34,21 @@ bool is_on(const Plan& plan, const std::string& part) {
   throw Error("no part " + part);
 }
 
+TEST(Plan, WhatThrowsInThePilotLeavesTheCameraAsItWas) {
+  Scene scene = load_scene(kit::source_path("scenes/box/box.xml"), {});
+  const Accel accel(scene);
+  RenderOptions options;
+  options.cpu_seconds = 60;
+  Plan plan = make_plan(scene, options);
+  const int width = scene.camera.width;
+  const auto run = [&] {
+    run_pilot(
+        scene, accel, options, [](const RenderState&) -> bool { throw Error("no more"); }, plan);
+  };
+  EXPECT_THROW(run(), Error);
+  EXPECT_EQ(scene.camera.width, width);
+}
+
 TEST(Plan, LeavesOutWhatAnEasySceneDoesNotNeed) {
   Scene scene = kit::stage(128);
   finish(scene);

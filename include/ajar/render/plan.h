@@ -44,7 +44,8 @@ double least_budget(const Camera& camera);
 /// is nothing to join, bdpt where there is no time to learn. Takes no time itself.
 Plan make_plan(const Scene& scene, const RenderOptions& options);
 /// Tells beforehand what the render will find out, by a small image of it, and notes that in the plan. The same for the
-/// same scene, seed and budget. The camera has another size meanwhile. Where the monitor says stop, nothing is noted.
+/// same scene, seed and budget. The camera has another size meanwhile, and its own again also where something throws.
+/// Where the monitor says stop, nothing is noted.
 void run_pilot(Scene& scene, const Accel& accel, const RenderOptions& options, const Monitor& monitor, Plan& plan);
 /// The parts as the user names them, for `--plan LIST`: "camera-guiding,light-guiding,light-subpaths". Sets integrator
 /// and guidance. Throws Error for a name or a combination that does not exist.
