@@ -28,15 +28,16 @@ using Trace = void (*)(const Job&, Sample&, Scratch&);
 /// The light vertices of a pass as virtual point lights, the same for all pixels.
 struct Vpls {
   LightStore store;
-  uint32_t pass = ~0u;   ///< that they are of
-  uint32_t paths = 256;  ///< light subpaths of a pass
-  double even = 0;       ///< vertices per area and light subpath; read where no field tells
-  int joins = 8;         ///< at the first vertex of a camera subpath that can be joined
-  int inner_joins = 8;   ///< at others
-  WalkOptions camera;    ///< of camera subpaths: fields are read for the lights alone
-  uint32_t most = 0;     ///< lights that are kept, about
-  double least = 0;      ///< a light that brings this to the image, or more, is sure to be kept; 0: all are
-  double per_flux = 0;   ///< what a light is taken to bring, beside what the field says
+  uint32_t pass = ~0u;          ///< that they are of
+  uint32_t paths = 256;         ///< light subpaths of a pass
+  double even = 0;              ///< vertices per area and light subpath; read where no field tells
+  int joins = 8;                ///< at the first vertex of a camera subpath that can be joined
+  int inner_joins = 8;          ///< at others
+  WalkOptions camera;           ///< of camera subpaths: fields are read for the lights alone
+  uint32_t most = 0;            ///< lights that are kept, about
+  double least = 0;             ///< a light that brings this to the image, or more, is sure to be kept; 0: all are
+  double per_flux = 0;          ///< what a light is taken to bring, beside what the field says
+  uint32_t rejected_at = none;  ///< light subpath of the pass's first rejected value
   std::vector<std::vector<Splat>> splats;  ///< of the pass's light subpaths, per chunk of the film
 };
 
@@ -214,12 +215,15 @@ inline void gain_splat(const Job& job, Scratch& scratch) {
   if (came_by_delta(scratch.light)) scratch.ledger->caustics += energy;
 }
 
-/// Law 6: only finite, non-negative values may go on; others are counted.
-inline bool accept(const Rgb& value, const Sample& sample, Scratch& scratch) {
+/// Law 6: only finite, non-negative values may go on; others are counted, and the path of the first is kept.
+inline bool accept(const Rgb& value, uint64_t path, Scratch& scratch) {
   if (value.x >= 0 && value.y >= 0 && value.z >= 0 && value.x + value.y + value.z < infinity) return true;
   ++scratch.rejected;
-  if (scratch.rejected_at == Scratch::no_path) scratch.rejected_at = sample.path;
+  if (scratch.rejected_at == Scratch::no_path) scratch.rejected_at = path;
   return false;
+}
+inline bool accept(const Rgb& value, const Sample& sample, Scratch& scratch) {
+  return accept(value, sample.path, scratch);
 }
 
 }  // namespace ajar

@@ -10,15 +10,17 @@ namespace ajar {
 namespace {
 
 // What a group of light subpaths left.
-struct Part {
+struct Group {
   LightStore store;
   std::vector<bool> may_light;  // of the subpath at work: its last vertex, by how many there are
   std::vector<Splat> splats;
+  uint64_t rejected_at = Scratch::no_path;  // its first
 };
 
 // What a light subpath whose last event but one was a delta brings to the lens: camera subpaths could not aim at it.
 // Weights are against s = 0 and s = 1.
-void join_lens(const Job& job, Sampler& sampler, double share, Scratch& scratch, std::vector<Splat>& splats) {
+void join_lens(const Job& job, Sampler& sampler, double share, uint32_t path, Scratch& scratch,
+               std::vector<Splat>& splats) {
   const Subpath& light = scratch.light;
   if (light.n < 3 || !light[light.n - 2].delta || !connectable(light[light.n - 1].guide)) return;
   const Camera& camera = job.scene->camera;
@@ -31,11 +33,7 @@ void join_lens(const Job& job, Sampler& sampler, double share, Scratch& scratch,
   // The film takes as many light subpaths as it has pixels.
   const double pixels = double(camera.crop_width) * camera.crop_height;
   c.value *= float(weight(job.walk.heuristic, c) * pixels / job.walk.light_paths);
-  const float sum = c.value.x + c.value.y + c.value.z;
-  if (sum >= 0 && sum < infinity)
-    splats.push_back({c.raster, c.value});
-  else
-    ++scratch.rejected;
+  if (accept(c.value, path, scratch)) splats.push_back({c.raster, c.value});
 }
 
 // Points of one sequence for either half of the image, numbered by passes and paths, so that the lights of a pass are
@@ -45,7 +43,7 @@ Sampler numbers_of(const Job& job, uint64_t stream, uint32_t pass, uint32_t path
   return make_sampler(job.sampler, job.seed, Side::light, stream, point);
 }
 
-void trace_lights(const Job& job, Sampler sampler, Scratch& scratch, Part& out) {
+void trace_lights(const Job& job, Sampler sampler, uint32_t path, Scratch& scratch, Group& out) {
   Subpath& light = scratch.light;
   Walk walk;
   light.n = 0;
@@ -57,7 +55,7 @@ void trace_lights(const Job& job, Sampler sampler, Scratch& scratch, Part& out) 
       if (light.n > 1 && !scatter(job.walk, sampler, light, walk)) break;
       ++scratch.counters.light_rays;
       if (!step(*job.scene, *job.accel, job.walk, light, walk, surface)) break;
-      join_lens(job, sampler, walk.first_share, scratch, out.splats);
+      join_lens(job, sampler, walk.first_share, path, scratch, out.splats);
       out.may_light.push_back(can_light(*job.scene, surface, light[light.n - 1].guide));
     }
   }
@@ -71,7 +69,7 @@ void trace_lights(const Job& job, Sampler sampler, Scratch& scratch, Part& out) 
 // Lights that a guided pass keeps, about.
 constexpr uint32_t kept_lights = 1024;
 
-constexpr uint32_t grain = 16;  // light subpaths of a part
+constexpr uint32_t grain = 16;  // light subpaths of a group
 
 // What arrives there, whatever is made of it.
 double flux_at(const LightStore& store, const LightStore::Place& at) {
@@ -83,7 +81,7 @@ double value_of(const Vpls& vpls, const LightStore& store, const LightStore::Pla
   return double(at.worth) + vpls.per_flux * flux_at(store, at);
 }
 
-// Keeps some lights of a part. Which depends on each light alone, and on a number of its own: as fields change from
+// Keeps some lights of a group. Which depends on each light alone, and on a number of its own: as fields change from
 // frame to frame, most stay.
 void select_lights(const Job& job, uint32_t pass, uint32_t number, LightStore& store) {
   const Vpls& v = *job.vpls;
@@ -99,18 +97,21 @@ void select_lights(const Job& job, uint32_t pass, uint32_t number, LightStore& s
 }
 
 // Traces the light subpaths, and copies of their vertices those alone that are kept.
-std::vector<Part> trace_parts(const Job& job, uint64_t stream, uint32_t pass, std::vector<Scratch>& scratches) {
+std::vector<Group> trace_groups(const Job& job, uint64_t stream, uint32_t pass, std::vector<Scratch>& scratches) {
   const uint32_t paths = job.vpls->paths;
-  std::vector<Part> parts((paths + grain - 1) / grain);
-  parallel_for(parts.size(), [&](size_t part) {
+  std::vector<Group> groups((paths + grain - 1) / grain);
+  parallel_for(groups.size(), [&](size_t g) {
     Scratch& scratch = scratches[thread_slot()];
+    Group& group = groups[g];
     clear(scratch.traced);
-    const uint32_t from = uint32_t(part) * grain, to = std::min(paths, from + grain);
-    for (uint32_t i = from; i < to; ++i) trace_lights(job, numbers_of(job, stream, pass, i), scratch, parts[part]);
-    if (job.vpls->least > 0) select_lights(job, pass, uint32_t(part), scratch.traced);
-    append(parts[part].store, scratch.traced);
+    scratch.rejected_at = Scratch::no_path;
+    const uint32_t from = uint32_t(g) * grain, to = std::min(paths, from + grain);
+    for (uint32_t i = from; i < to; ++i) trace_lights(job, numbers_of(job, stream, pass, i), i, scratch, group);
+    if (job.vpls->least > 0) select_lights(job, pass, uint32_t(g), scratch.traced);
+    append(group.store, scratch.traced);
+    group.rejected_at = scratch.rejected_at;
   });
-  return parts;
+  return groups;
 }
 
 void put_in_order(const Scene& scene, LightStore& store) {
@@ -131,14 +132,14 @@ double most_density(const Job& job, const Vertex& v) {
 // Finds out from light subpaths that are in no image how much a light must bring to be kept.
 void measure_lights(const Job& job, std::vector<Scratch>& scratches, Vpls& vpls) {
   constexpr uint64_t stream = 0x70696c6f74;
-  const std::vector<Part> parts = trace_parts(job, stream, 0, scratches);
+  const std::vector<Group> groups = trace_groups(job, stream, 0, scratches);
   double worth = 0, flux = 0;
-  for (const Part& part : parts)
-    for (const LightStore::Place& at : part.store.places) worth += double(at.worth), flux += flux_at(part.store, at);
+  for (const Group& g : groups)
+    for (const LightStore::Place& at : g.store.places) worth += double(at.worth), flux += flux_at(g.store, at);
   vpls.per_flux = flux > 0 ? by_flux * worth / flux : 0;
   std::vector<double> values;
-  for (const Part& part : parts)
-    for (const LightStore::Place& at : part.store.places) values.push_back(value_of(vpls, part.store, at));
+  for (const Group& g : groups)
+    for (const LightStore::Place& at : g.store.places) values.push_back(value_of(vpls, g.store, at));
   vpls.least = find_threshold(std::move(values), vpls.most);
 }
 
@@ -152,14 +153,16 @@ uint32_t chunk_of_splat(const Film& film, uint64_t key, size_t number) {
 // Traces the light subpaths of a pass and keeps its lights.
 void trace_vpls(const Job& job, const Film& film, uint32_t pass, std::vector<Scratch>& scratches, Vpls& vpls) {
   constexpr uint64_t stream = 0x76706c;
-  const std::vector<Part> parts = trace_parts(job, stream, pass, scratches);
+  const std::vector<Group> groups = trace_groups(job, stream, pass, scratches);
   clear(vpls.store);
+  vpls.rejected_at = none;
   for (std::vector<Splat>& list : vpls.splats) list.clear();
   size_t splats = 0;
   const uint64_t key = hash(hash(job.seed, 0x5b1a7), pass);
-  for (const Part& part : parts) {
-    append(vpls.store, part.store);
-    for (const Splat& s : part.splats) vpls.splats[chunk_of_splat(film, key, splats++)].push_back(s);
+  for (const Group& g : groups) {
+    append(vpls.store, g.store);
+    for (const Splat& s : g.splats) vpls.splats[chunk_of_splat(film, key, splats++)].push_back(s);
+    if (vpls.rejected_at == none && g.rejected_at != Scratch::no_path) vpls.rejected_at = uint32_t(g.rejected_at);
   }
   put_in_order(*job.scene, vpls.store);
   std::vector<float> near;
@@ -226,7 +229,7 @@ void place_vpls(const Job& job, const Film& film, std::vector<Scratch>& scratche
   }
   if (vpls.pass != pass) {
     trace_vpls(job, film, pass, scratches, vpls);
-    if (film.chunks > 0) forget_counts(scratches);  // a pass that is gone on with
+    if (film.chunks > 0) forget_counts(scratches), vpls.rejected_at = none;  // a pass that is gone on with
   }
   vpls.pass = pass;
 }

@@ -77,6 +77,13 @@ void note_rejected(RenderStats& stats, const std::vector<uint64_t>& pixels, cons
     }
 }
 
+// The same of what is traced for all pixels, once.
+void note_rejected(RenderStats& stats, Vpls& vpls, uint64_t seed) {
+  if (vpls.rejected_at == none || stats.replay.size() >= 5) return;
+  stats.replay.push_back(fmt::format("light subpath {} pass {} seed {}", vpls.rejected_at, vpls.pass, seed));
+  vpls.rejected_at = none;
+}
+
 // What the batch found goes to the film and to the sums, tile by tile.
 void take_in(const Pass& pass, const Batch& batch, RenderState& state) {
   Film& film = state.film;
@@ -113,6 +120,7 @@ void trace_next(const Job& job, const RenderOptions& options, Workshop& shop, Re
   Pass pass = plan_pass(job, options, state);
   trace(pass, film, shop);
   take_in(pass, shop.batch, state);
+  note_rejected(state.stats, shop.vpls, pass.job.seed);
   take_counts(pass.job, shop.scratches, state);
   if (film.chunks < chunk_count(film)) return;
   finish_pass(film);
