@@ -31,6 +31,10 @@ void rebalance(const Film& film, Balance& balance) {
     const float step = std::clamp(float(std::sqrt(of_variance / of_work)), least_step, most_step);  // (G16)
     balance.goes_on = std::clamp(balance.goes_on * step, Balance::least, Balance::most);
   }
+  forget_sums(balance);
+}
+
+void forget_sums(Balance& balance) {
   balance.work = {}, balance.passes = 0;
   balance.found.assign(balance.found.size(), {});
 }

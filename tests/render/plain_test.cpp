@@ -318,6 +318,22 @@ TEST(Plain, LeavesOutMergingFirst) {
   }
 }
 
+// What merging passes found of their image is not held against the new one.
+TEST(Plain, BalanceBeginsAnewWithTheImageThatDoesNotMerge) {
+  Scene scene = stage(64);
+  finish(scene);
+  const RenderOptions o = sparing("guided-vcm", 40);
+  RenderState state = start_render(scene, o);
+  uint32_t looked = 0;
+  render(scene, Accel(scene), o, state, [&](const RenderState& now) {
+    if (now.plain.merged == 0) return true;
+    ++looked;
+    EXPECT_LE(now.balance.passes, now.film.passes);
+    return now.film.passes < 3;
+  });
+  EXPECT_GT(looked, 0u);
+}
+
 // Whoever stops just then has the image with merging, and may go on without.
 TEST(Plain, StopsShowWhatMergedUntilThereIsMore) {
   Scene scene = stage(64);

@@ -26,5 +26,7 @@ struct Balance {
 };
 /// Looks at it anew, and clears the sums. Does nothing where there are none.
 void rebalance(const Film& film, Balance& balance);
+/// Clears the sums: what they are of is in no image any more.
+void forget_sums(Balance& balance);
 
 }  // namespace ajar
