@@ -12,7 +12,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind fields_kind = {"AJARfd11", "file of fields", "make one with --save-fields",
+constexpr FileKind fields_kind = {"AJARfd12", "file of fields", "make one with --save-fields",
                                   "learn the fields again with --save-fields"};
 
 bool is_amount(float x) { return x >= 0 && x < infinity; }
@@ -335,7 +335,7 @@ std::string scene_key(const Scene& scene) {
   for (const Mesh& m : scene.meshes)
     triangles += m.triangles.size(), sum = sum_of(m.triangles, sum_of(m.positions, sum));
   for (const Shape& s : scene.shapes) {
-    const uint32_t words[] = {uint32_t(s.kind), s.mesh, s.light, s.group};
+    const uint32_t words[] = {uint32_t(s.kind), s.mesh, s.light, s.group, uint32_t(s.flip)};
     sum = checksum(words, sizeof words, checksum(&s.to_world, sizeof s.to_world, sum));
   }
   for (const Instance& i : scene.instances)
@@ -348,6 +348,8 @@ std::string scene_key(const Scene& scene) {
     sum = checksum(&light.to_world, sizeof light.to_world, sum);
     sum = checksum(&light.position, sizeof light.position, sum);
     sum = checksum(&light.direction, sizeof light.direction, sum);
+    const float cone[] = {light.cutoff, light.beam};
+    sum = checksum(cone, sizeof cone, sum);
     watts += one;
   }
   return fmt::format(

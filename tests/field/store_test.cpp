@@ -167,6 +167,9 @@ TEST_F(Store, KeyTellsWhatFieldsDependOn) {
   })) << "the camera may move";
   EXPECT_TRUE(changed([](Scene& s) { s.meshes[0].positions[0].x += 0.01f; })) << "a door that turns";
   EXPECT_TRUE(changed([](Scene& s) { s.lights[0].radiance = Slot{2.0f}; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.shapes[0].flip = !s.shapes[0].flip; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.lights[0].beam = 0.1f; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.lights[0].cutoff = 0.2f; }));
   EXPECT_TRUE(changed([](Scene& s) { add_light(s, LightKind::constant, Slot{0.1f}); }));
 }
 
