@@ -84,6 +84,7 @@ void trace_to(uint32_t passes, const Job& job, const Film& film, const std::vect
   for (Scratch& s : scratches) {
     plain.rays += ray_count(s.counters);
     s.counters = {}, s.rejected = 0;
+    s.splats = nullptr, s.ledger = nullptr;
   }
 }
 

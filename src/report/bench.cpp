@@ -42,9 +42,10 @@ std::optional<Json> find_run(const Bench& bench, const Stand& stand, const Metho
   const fs::path path = bench.run_path(stand, method, seed);
   if (!is_there(path.string())) return {};
   Json file = read_json(path, "delete it, and the run is made again");
-  if (!file.is_object() || !file.contains("run") || !file.contains("reference"))
+  const Json content = file.is_object() ? file.value("content", Json("")) : Json();
+  if (!content.is_string() || !file.contains("run") || !file.contains("reference"))
     throw Error(fmt::format("{}: is no run of a bench; delete it", path.string()));
-  if (file.value("content", "") != stand.content)
+  if (content != stand.content)
     throw Error(fmt::format(
         "{}: a file of the scene has changed since; name another folder with -o, or delete {} and {}", path.string(),
         path.parent_path().string(), (bench.options.folder / "techniques" / stand.scene->name).string()));

@@ -211,6 +211,16 @@ TEST_F(Bench, AFolderOfAnotherSuiteIsRefused) {
   EXPECT_EQ(error_of(other), "");
 }
 
+TEST_F(Bench, WhatIsNoRunIsToldAsSuch) {
+  run(small());
+  const fs::path path = options.folder / "runs/s/p-seed0.json";
+  Json file = Json::parse(kit::bytes_of(path));
+  file["content"] = 1;
+  std::ofstream(path) << file;
+  EXPECT_NE(error_of(small()).find("p-seed0.json: is no run of a bench; delete it"), std::string::npos)
+      << error_of(small());
+}
+
 TEST_F(Bench, AnotherReferenceIsRefused) {
   run(small());
   const fs::path stem = reference_stem(suite(small()).scenes[0], 16, 12, options.references);
