@@ -100,9 +100,11 @@ void unite(const LightTree& tree, const std::vector<uint32_t>& parents, double l
   cut = std::move(out);
 }
 
+constexpr double least_gain = 0.5;  // of relative variance, for which entries are asked
+
 // Whether the cut's entries would gain so little over the plain choice that they are not worth the time: both second
 // moments of what comes, over the square of its mean. What an entry brings is taken to be one value or nothing.   (V7)
-bool is_plain(const LightTree& tree, const LightRules& rules, const Receiver& cell, const std::vector<CutNode>& cut) {
+bool is_plain(const LightTree& tree, const Receiver& cell, const std::vector<CutNode>& cut) {
   double promised = 0, mean = 0, plain = 0, learned = 0;
   for (const CutNode& w : cut) promised += double(importance(tree, w.node, cell));
   for (const CutNode& w : cut) {
@@ -112,7 +114,7 @@ bool is_plain(const LightTree& tree, const LightRules& rules, const Receiver& ce
     plain += sqr(part) * square / std::max(double(sky_share(tree, cell, w.node)), 1e-30);
     learned += sqr(part) * square / std::max(w.share, 1e-30);
   }
-  return !(plain - learned > double(rules.least_gain) * sqr(mean));
+  return !(plain - learned > least_gain * sqr(mean));
 }
 
 void append(std::vector<CutNode>& cut, const LightTree& tree, const LightRules& rules, bool plain, LearnedLights& to) {
@@ -226,7 +228,7 @@ LearnedLights learn_lights(const LightTree& tree, const LearnedLights& v, const 
     const Receiver* cell = tree.sky.empty() || cells.empty() ? nullptr : &cells[i];
     take(tree, v, tallies, v.cuts[i], rules, v.cuts[i].plain ? cell : nullptr, cut);
     weigh(rules, cut);
-    const bool plain = cell && is_plain(tree, rules, *cell, cut);
+    const bool plain = cell && is_plain(tree, *cell, cut);
     unite(tree, parents, 0.2 * double(rules.divide), cut);
     size_t room = cut.size() < rules.most ? rules.most - cut.size() : 0;
     divided.clear();

@@ -62,24 +62,11 @@ double pixel_error(const Film& film, const std::vector<glm::dvec3>& mean, double
 
 ErrorEstimate estimate(const Film& film, const std::vector<glm::dvec3>& mean, double epsilon) {
   if (is_all_zero(mean)) return {};
-  struct Pixel {
-    double error, light;
-  };
-  std::vector<Pixel> pixels = each_pixel(film, [&](int x, int y) {
-    return Pixel{pixel_error(film, mean, epsilon, x, y), luminance(Rgb(mean[size_t(y) * film.width + x]))};
-  });
-  const auto add = [](const Pixel& a, const Pixel& b) { return Pixel{a.error + b.error, a.light + b.light}; };
-  const auto kept = pixels.end() - std::ptrdiff_t(pixels.size() / 1000);
-  const Pixel all = std::accumulate(pixels.begin(), pixels.end(), Pixel{}, add);
-  if (kept != pixels.end())
-    std::nth_element(pixels.begin(), kept, pixels.end(),
-                     [](const Pixel& a, const Pixel& b) { return a.error < b.error; });
-  const Pixel most = std::accumulate(pixels.begin(), kept, Pixel{}, add);
+  std::vector<double> errors = each_pixel(film, [&](int x, int y) { return pixel_error(film, mean, epsilon, x, y); });
   const double more = film.passes / (film.passes + share_of_pass(film));
   ErrorEstimate out;
-  out.relmse = more * all.error / double(pixels.size());
-  out.relmse_trimmed = more * most.error / double(kept - pixels.begin());
-  out.trimmed_light = all.light > 0 ? std::clamp(1 - most.light / all.light, 0.0, 1.0) : 1;
+  out.relmse = more * std::accumulate(errors.begin(), errors.end(), 0.0) / double(errors.size());
+  out.relmse_trimmed = more * trimmed_mean(std::move(errors));
   return out;
 }
 

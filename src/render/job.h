@@ -31,8 +31,7 @@ struct Vpls {
   uint32_t pass = ~0u;          ///< that they are of
   uint32_t paths = 256;         ///< light subpaths of a pass
   double even = 0;              ///< vertices per area and light subpath; read where no field tells
-  int joins = 8;                ///< at the first vertex of a camera subpath that can be joined
-  int inner_joins = 8;          ///< at others
+  int joins = 8;                ///< at the first surface of a camera subpath
   WalkOptions camera;           ///< of camera subpaths: fields are read for the lights alone
   uint32_t most = 0;            ///< lights that are kept, about
   double least = 0;             ///< a light that brings this to the image, or more, is sure to be kept; 0: all are

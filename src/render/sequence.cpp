@@ -14,6 +14,8 @@ constexpr FileKind carried_kind = {"AJARan08", "carried field file", "an animati
 // Share of a frame's time that its lessons may take.
 constexpr double teaching_share = 1.0 / 3;
 
+constexpr float kept_near_motion = 0.125f;  // share of the evidence, from frame to frame
+
 // So many lessons of so many passes each, and no pass more. Where their time is over, one all the same, which ends with
 // the next pass, and as many as fields need to be of use. False where the monitor said stop.
 bool give_lessons(const Scene& scene, const Accel& accel, const RenderOptions& options, uint32_t lessons,
@@ -53,7 +55,7 @@ std::optional<Fields> teach(const Scene& scene, const Accel& accel, const Render
   RenderState state = start_render(scene, teaching);
   if (before) {
     const LearnOptions learning = learn_options(teaching);
-    StoredFields carried{doubt(before->fields, moved, sequence.doubt, learning), {}, 0};
+    StoredFields carried{doubt(before->fields, moved, kept_near_motion, learning), {}, 0};
     fit_lights(scene.light_tree, learning, carried.fields);
     for (Cell& c : carried.fields.cells) c.seen *= sequence.forget;  // or cells divide until the memory is full
     state.learning.train = 0;  // of an image; lessons that time cut short go on from where they are

@@ -124,13 +124,7 @@ void join_next_event(Gathering& work) {
   charge_join(work.scratch, 1, camera.n);
 }
 
-// Whether the lens sees the last vertex, itself or by way of delta events: such vertices of one tile are near each
-// other.
-bool is_seen_from_lens(const Subpath& camera) {
-  for (int i = 1; i + 1 < camera.n; ++i)
-    if (!camera[i].delta) return false;
-  return true;
-}
+constexpr int further_joins = 8;  // at all but the first surface
 
 void join_vpls(Gathering& work) {
   const Job& job = work.job;
@@ -138,11 +132,11 @@ void join_vpls(Gathering& work) {
   const Subpath& camera = scratch.camera;
   const LightStore& store = job.vpls->store;
   const Vertex& x = camera[camera.n - 1];
-  Visibility* const visibility = !job.guided && is_seen_from_lens(camera) ? &scratch.visibility : nullptr;
+  Visibility* const visibility = !job.guided && x.seen ? &scratch.visibility : nullptr;  // near others of the tile
   Prospect known{visibility};
   if (job.guided) known.views = &job.walk.fields->views, known.region = region_of(x.guide);
   expect_all(store, x, job.walk.max_edges + 1 - camera.n, known, scratch.expected);
-  const int joins = camera.n > 2 ? job.vpls->inner_joins : job.vpls->joins;
+  const int joins = camera.n > 2 ? further_joins : job.vpls->joins;
   const uint32_t key = uint32_t(work.sample.sampler.next1() * 0x1p32f);
   choose_some(store, scratch.expected, joins, key, scratch.choices);
   for (const StoreChoice& choice : scratch.choices) {

@@ -76,10 +76,10 @@ bool connect(const Camera& c, const Vec3& x, const Vec2& lens, float margin, Cam
     return false;
   out.p = map_point(c.to_world, o);
   const Vec3 between = out.p - x;
-  out.distance = std::sqrt(length2(between));
-  if (!(out.distance > 0)) return false;
-  out.w = between / out.distance;
-  out.factor = parallel ? orthographic_factor(c) : perspective_factor(c, out.distance, local.z);
+  const float distance = std::sqrt(length2(between));
+  if (!(distance > 0)) return false;
+  out.w = between / distance;
+  out.factor = parallel ? orthographic_factor(c) : perspective_factor(c, distance, local.z);
   return out.factor < infinity;
 }
 

@@ -53,7 +53,6 @@ struct LightRules {
   float divide = 1 / 16.0f;  ///< share of its cut above which an entry is divided
   uint32_t most = 32;        ///< entries of a cut
   float least_asks = 1;      ///< of cells that see no light
-  float least_gain = 0.5f;   ///< of relative variance, for which entries are asked where a plain choice is to be had
   bool by_power = false;     ///< entries promise their power, whoever asks
 };
 

@@ -90,7 +90,6 @@ Picture variance(const Film& film);
 /// but black was seen.
 struct ErrorEstimate {
   double relmse = infinity, relmse_trimmed = infinity;  ///< of all pixels; without the worst 0.1 % of them
-  double trimmed_light = 1;                             ///< share of the image's luminance that those worst ones hold
 };
 /// Whether nothing but black was seen.
 bool is_black(const Film& film);

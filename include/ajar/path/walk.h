@@ -45,13 +45,15 @@ inline float merge_density(const Merging& m, const Vec3& p) {
   return m.paths > 0 ? pi * sqr(merge_radius(m, p)) * float(m.paths) : 0;
 }
 
+/// Beyond so many vertices no subpath is sure to go on.
+inline constexpr int sure_vertices = 64;
+
 struct WalkOptions {
   int max_edges = 1 << 20;  ///< of a whole path from light to camera
   int roulette_from = 5;    ///< edges that are traced without roulette
   Heuristic heuristic = Heuristic::power;
   float window = 5;                ///< guided subpaths that promise less than 1 / window of their start face roulette
   float goes_on = 1;               ///< so many times more camera subpaths go on than that (G16)
-  int sure_vertices = 64;          ///< beyond, no subpath is sure to go on
   const Fields* fields = nullptr;  ///< guide the subpaths; null: unguided
   double inner_share = 1;          ///< Shares::inner of all joins (join/mis.h)
   double seen_share = 1;           ///< Shares::seen
@@ -104,7 +106,7 @@ inline float keep(const WalkOptions& options, const Guide& guide, int vertices, 
   if (options.fields) {
     const Promise p = promise(guide, beta);
     if (!(promised > 0)) promised = p.all;
-    const float most = vertices > options.sure_vertices ? surest(vertices) : 1;
+    const float most = vertices > sure_vertices ? surest(vertices) : 1;
     const float least = std::clamp(max_component(survival) / options.window, 0.05f, most);
     if (p.beyond > 0 && promised > 0) {
       const float window = guide.side == Side::camera ? options.window * options.goes_on : options.window;

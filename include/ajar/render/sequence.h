@@ -16,10 +16,9 @@ struct Coherence {
 
 struct SequenceOptions {
   Coherence coherence;
-  uint32_t teach = 1;    ///< passes that teach the fields of a frame before it is rendered; they are in no image
-  uint32_t begin = 16;   ///< the same where nothing is known yet: at least 9
-  float forget = 0.8f;   ///< share of the evidence that is kept from frame to frame
-  float doubt = 0.125f;  ///< share of it that is kept near what moved
+  uint32_t teach = 1;   ///< passes that teach the fields of a frame before it is rendered; they are in no image
+  uint32_t begin = 16;  ///< the same where nothing is known yet: at least 9
+  float forget = 0.8f;  ///< share of the evidence that is kept from frame to frame
 };
 
 /// Which files the frames up to one had.

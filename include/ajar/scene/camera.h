@@ -46,7 +46,6 @@ struct CameraRay {
 struct CameraConnection {
   Vec3 p{0};  ///< on the lens; orthographic: on the near clip plane
   Vec3 w{0};  ///< from the point to the lens, unit
-  float distance = 0;
   Vec2 raster{0};
   float factor = 0;
 };
