@@ -22,7 +22,7 @@ struct FramePattern {
   std::string before, after;  ///< the number
   int digits = 4;
 };
-/// Throws Error unless the name has one %d, and ends in .exr where that is asked for.
+/// Throws Error, which begins with the option, unless the name has one %d, in its last part, and ends in .exr.
 FramePattern parse_pattern(const std::string& option, const std::string& text);
 std::string frame_name(const FramePattern& pattern, int frame);
 

@@ -40,7 +40,7 @@ bool plans(const RenderArguments&, const Scene&);
 std::string usual_light_choice(const std::string& integrator);
 /// "uniform", "power", "tree" or "learned".
 std::string light_choice_of(const RenderArguments&, const std::string& integrator);
-/// Sets the scene's choice of lights, too, and leaves notes there. Throws where options do not go together.
+/// Sets the scene's choice of lights, too. Throws Error where options do not go together.
 RenderOptions render_options(const RenderArguments&, Scene& scene, bool planned);
 
 }  // namespace ajar

@@ -10,8 +10,8 @@
 namespace ajar {
 
 /// A vertex a_i of a subpath. For both sides: "own" is the side that traced it, "before" the vertex nearer to that
-/// side's end. Vertex 0 (the lens, the light's point) uses p, ng, beta, own, delta, infinite and sum alone, of a light
-/// also error and point.
+/// side's end. Vertex 0 (the lens, the light's point) uses p, ng, beta, own, delta, infinite, seen (false) and sum
+/// alone, of a light also error and point.
 struct Vertex {
   Vec3 p{0};
   float error = 0;      ///< offset for rays that leave here

@@ -70,7 +70,7 @@ struct Walk {
   float t_min = 0, t_max = infinity;
   Rgb beta{1};              ///< throughput that the next vertex receives
   double pdf = 1;           ///< solid-angle density of d; when planar, density per area perpendicular to d
-  bool planar = false;      ///< parallel light from infinity or an orthographic camera: no 1/d^2
+  bool planar = false;      ///< parallel light from infinity: no 1/d^2
   double other_before = 0;  ///< area density of a_(n-2) as the other side would generate it from a_(n-1)
   double sum = 0;           ///< S of the vertex that the ray leaves (R2); set by step, also when the ray escapes
   double first_share = 1;   ///< v_1 of (R2), not raised
