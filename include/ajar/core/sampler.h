@@ -80,6 +80,8 @@ struct Sampler {
   }
 };
 
+/// The numbers of one path of a side in one pass. Sobol: the pass's parity chooses the sequence, and half of its number
+/// is the point in it; so passes are to come in pairs, each number once. Independent: every pass has its own.
 Sampler make_sampler(SamplerKind kind, uint64_t seed, Side side, uint64_t path, uint32_t pass);
 
 }  // namespace ajar

@@ -83,12 +83,15 @@ CellTable make_probe_table(std::vector<Probe> probes, double area);
 uint32_t normal_bin(const Vec3& n);
 /// Number of the cube of level 0 around a point; past the last one where there is none.
 size_t top_cube(const CellTable& table, const Vec3& p);
-/// n: unit normal on the side that matters.
+/// The smallest cell that a point with this normal is in; n: unit, on the side that matters.
 Place find(const CellTable& table, const Vec3& p, const Vec3& n);
+/// Gives the key, which is not there yet, a cell.
 void insert(CellTable& table, CellKey key, uint32_t cell);
 /// The cell of this key, none if there is none.
 uint32_t cell_of(const CellTable& table, CellKey key);
+/// From now on find looks for smaller cells, of the next level, in this one, whose key is there.
 void set_divided(CellTable& table, CellKey key);
+/// 0: largest; a cube of the next level is half as wide.
 int level_of(CellKey key);
 /// The cube of a cell; of a probe, its point.
 Box cube_of(const CellTable& table, CellKey key);

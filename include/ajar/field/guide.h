@@ -74,11 +74,17 @@ struct Promise {
 Promise promise(const Guide& guide, const Rgb& beta);
 /// Whether sample reads u_lobe.
 inline bool chooses(const Guide& guide) { return guide.bsdf.chooses || guide.mix > 0; }
+/// What the vertex scatters between wo and the unit world direction wi by all but delta events, and with which
+/// densities either side would go that way: pdf is sample's, pdf_reverse that of wo for the other side's walk that
+/// comes from wi. All zero where nothing can leave towards wi.
 GuideEval evaluate(const Guide& guide, const Vec3& wi, Mode mode);
 /// The same but for pdf, which is the bsdf's alone. with_field makes of it, where f_cos is not black, that of evaluate:
 /// the field is what takes time.
 GuideEval evaluate_bsdf(const Guide& guide, const Vec3& wi, Mode mode);
 float with_field(const Guide& guide, const Vec3& wi, float bsdf_pdf);
+/// Samples wi, delta events among it, from the mixture of field and bsdf: u_lobe and u in [0, 1), u_lobe read only
+/// where chooses says so. The weight is divided by the density, and may be black; goes_on is not set. False where
+/// nothing is scattered: then out is not to be read.
 bool sample(const Guide& guide, float u_lobe, const Vec2& u, Mode mode, GuideSample& out);
 
 }  // namespace ajar

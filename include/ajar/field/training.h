@@ -41,6 +41,8 @@ struct Training {
   Tallies& of(Side side);
 };
 
+/// Sums of zero for these fields, as large as their cells, strata and portals are now: they are to be started anew when
+/// any of these change.
 Training start_training(const Fields& fields);
 
 /// A segment as its cell gets to know it.
@@ -51,6 +53,9 @@ struct Record {
   float value = 0;     ///< the field's, from there
   float weight = 1;  ///< reciprocal of the density with which such segments are made, in units of that of a cosine lobe
 };
+/// Adds it to the stratum of the cell that w is in, to what the cell knows of distances and, where the field has
+/// portals, to those that the segment's line crosses. Nothing where w lies below the cell's plane, the weight is not
+/// positive, or the value is negative or no number; zero is a value. tallies: of this field.
 void record(const Fields& fields, const Field& field, Tallies& tallies, uint32_t cell, const Record& record);
 /// A record, and what it is for: whose field, and which cell of it.
 struct FieldRecord {
@@ -66,9 +71,11 @@ void record(const Fields& fields, Training& training, std::span<const FieldRecor
 void record_square(const Field& field, Tallies& tallies, uint32_t cell, const Vec2& at, float value, float weight);
 /// Irradiance (or the lens's importance) that a vertex in the cell got from next-event estimation; zeros too.
 void record_direct(const Field& field, Tallies& tallies, uint32_t cell, float value);
+/// A vertex lay in the cell.
 void record_visit(Tallies& tallies, uint32_t cell);
+/// A vertex with this normal lay where there is no cell yet; key: of the one that ought to be there.
 void record_missing(Sightings& sightings, CellKey key, const Vec3& n);
-/// Adds what one thread saw to what all saw.
+/// Adds what one thread saw to what all saw, and empties it.
 void gather(Sightings& to, Sightings& from);
 
 }  // namespace ajar

@@ -38,12 +38,16 @@ inline uint32_t affordable_regions(double memory) {
   return std::min(most_regions, uint32_t(std::sqrt(2 * memory / double(bytes_of_pair) + 0.25) - 0.5));
 }
 
+/// Chances are stored in steps of it.
 inline constexpr float chance_step = 1 / 255.0f;
+/// Views::chance of two regions, 1 where either is not among those that are known.
 inline float chance(const Views& v, uint32_t a, uint32_t b) {
   return a < v.regions && b < v.regions ? float(v.chance[pair_index(a, b)]) * chance_step : 1;
 }
 inline std::size_t bytes(const Views& v) { return v.tried.size() * bytes_of_pair; }
+/// Counts of zero for its pairs.
 ViewTallies start_tallies(const Views& views);
+/// A join between two regions was tried; free: nothing was in its way. Threads may record at once.
 void record_join(const Views& views, ViewTallies& tallies, uint32_t a, uint32_t b, bool free);
 /// The next views, of so many regions: of older evidence the share kept counts.
 Views learn_views(const Views& views, const ViewTallies& tallies, uint32_t regions, float kept);

@@ -46,13 +46,14 @@ struct Film {
 
 /// Pixels are traced in square tiles, the unit of parallel work; chunk i is tile i in rows.
 inline constexpr int tile = 16;
+/// Tiles in a row; those at the right and lower edges may be cut.
 inline int tiles_x(const Film& film) { return (film.width + tile - 1) / tile; }
 inline uint32_t chunk_count(const Film& film) {
   return uint32_t(tiles_x(film)) * uint32_t((film.height + tile - 1) / tile);
 }
-/// Columns and rows of a tile, before the grid is moved.
+/// Columns and rows of a tile, before the grid is moved (tile_shift).
 struct TileBounds {
-  int x0, y0, x1, y1;
+  int x0, y0, x1, y1;  ///< x1, y1: one past the last
   size_t pixels() const { return size_t(x1 - x0) * size_t(y1 - y0); }
 };
 inline TileBounds tile_bounds(const Film& film, uint32_t chunk) {
