@@ -4,6 +4,7 @@
 
 #include "ajar/core/error.h"
 #include "ajar/core/parallel.h"
+#include "ajar/core/warp.h"
 
 namespace ajar {
 namespace {
@@ -53,9 +54,6 @@ float density(const Environment& e, const Vec2& texels, float sin_theta) {
   return to_solid(e, per_texel, sin_theta);
 }
 
-// Tent over (-1, 1).
-float tent(float u) { return u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 - 2 * u); }
-
 // Integral of sin(theta) against the tent of a row of texels; the first and last row reach flat to the poles, or stand
 // at them.
 double solid_of_row(int y, int height, bool polar) {
@@ -88,7 +86,7 @@ namespace {
 Vec2 around(const Environment& e, const Distribution2D::Cell& c, const Vec2& u) {
   const Rows rows = rows_of(e);
   const float w = float(e.table.width), low = rows.top, high = rows.top + rows.steps;
-  const float x = float(c.x) + 0.5f + tent(u.x), y = float(c.y) + 0.5f + tent(u.y);
+  const float x = float(c.x) + 0.5f + to_tent(u.x), y = float(c.y) + 0.5f + to_tent(u.y);
   return {x < 0 ? x + w : (x >= w ? x - w : x), y < low ? 2 * low - y : (y > high ? 2 * high - y : y)};
 }
 

@@ -1,5 +1,7 @@
 #include "ajar/scene/filter.h"
 
+#include "ajar/core/warp.h"
+
 namespace ajar {
 namespace {
 
@@ -110,8 +112,6 @@ float sample_table(const Filter& f, float u, float& weight) {
   return ((float(i) + in_bin) * (2.0f / table_size) - 1) * f.radius;
 }
 
-float sample_tent(float u) { return u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 - 2 * u); }
-
 }  // namespace
 
 Filter make_filter(FilterKind kind, float radius, std::optional<float> a, std::optional<float> b) {
@@ -136,7 +136,7 @@ float eval(const Filter& f, float x) {
 Vec2 sample(const Filter& f, const Vec2& u, float& weight) {
   weight = 1;
   if (f.kind == FilterKind::box) return (2.0f * u - 1.0f) * f.radius;
-  if (f.kind == FilterKind::tent) return Vec2(sample_tent(u.x), sample_tent(u.y)) * f.radius;
+  if (f.kind == FilterKind::tent) return Vec2(to_tent(u.x), to_tent(u.y)) * f.radius;
   const float x = sample_table(f, u.x, weight);
   return {x, sample_table(f, u.y, weight)};
 }

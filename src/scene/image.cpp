@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "ajar/core/error.h"
+#include "ajar/core/srgb.h"
 #include "ajar/scene/texture.h"
 #include "primaries.h"
 
@@ -17,14 +18,12 @@ namespace {
 constexpr size_t most_bytes = size_t(2) << 30;
 constexpr int longest_side = 1 << 17;
 
-float srgb_to_linear(float x) { return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f); }
-
 // How stored numbers become linear ones. exponent 1: as they stand; 0: sRGB.
 struct Transfer {
   float exponent = 1;
   float operator()(float x) const {
     if (exponent == 1) return x;
-    return exponent == 0 ? srgb_to_linear(x) : std::pow(std::max(x, 0.0f), exponent);
+    return exponent == 0 ? float(decode_srgb(double(x))) : std::pow(std::max(x, 0.0f), exponent);
   }
 };
 

@@ -42,7 +42,7 @@ class ImageFile : public testing::Test {
 
 float decode_srgb(int byte) {
   const float x = float(byte) / 255;
-  return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f);
+  return float(x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4));
 }
 
 // Rows of red, green, blue and grey: which end is up, which channel is which.

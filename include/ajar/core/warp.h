@@ -16,6 +16,9 @@ inline Vec2 to_disk(const Vec2& u) {
   return {r * std::cos(phi), r * std::sin(phi)};
 }
 
+/// Tent over (-1, 1); density 1 - |x|.
+inline float to_tent(float u) { return u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 - 2 * u); }
+
 /// Cosine-weighted hemisphere about +z; density cos / pi [1/sr].
 inline Vec3 to_cosine_hemisphere(const Vec2& u) {
   const Vec2 d = to_disk(u);

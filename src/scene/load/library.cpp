@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "ajar/core/error.h"
+#include "ajar/core/srgb.h"
 #include "mtl.h"
 #include "obj.h"
 #include "parts.h"
@@ -95,7 +96,7 @@ Rgb decoded(Params& p, const MtlMaterial& m, const Rgb& c) {
   if (max_component(c) > 1)
     note(p.loader, p.node,
          fmt::format("usemtl {}: a reflectance above 1 would make light from nothing: it was set to 1", m.name));
-  return glm::min(Rgb(from_srgb(c.x), from_srgb(c.y), from_srgb(c.z)), Rgb(1));
+  return glm::min(Rgb(decode_srgb(c.x), decode_srgb(c.y), decode_srgb(c.z)), Rgb(1));
 }
 
 bool is_glass(const MtlMaterial& m) { return m.illum == 4 || m.illum == 6 || m.illum == 7 || m.illum == 9; }

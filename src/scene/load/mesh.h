@@ -81,8 +81,6 @@ void transform(Mesh& mesh, const Mat4& to_world);
 
 // What the readers share.
 
-/// A part of a colour that is encoded as sRGB (IEC 61966-2-1), as linear light.
-double from_srgb(double encoded);
 /// The texture coordinates, or 0 where one of them is not finite.
 Vec2 finite_or_zero(const Vec2& uv);
 /// A file to read from, and the bytes of one. Throw Error where it cannot be read.

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "ajar/core/error.h"
+#include "ajar/core/srgb.h"
 #include "digits.h"
 #include "mesh.h"
 #include "ply.h"
@@ -139,7 +140,7 @@ struct Body {
     const auto part = [&](size_t i) {
       const PlyType type = e.properties[i].type;
       const double x = values[i] / (group.color || encoded ? ply_largest[size_t(type)] : 1);
-      return encoded && is_integer(type) ? from_srgb(x) : x;
+      return encoded && is_integer(type) ? decode_srgb(x) : x;
     };
     return Rgb(part(group.parts[0]), part(group.parts[1]), part(group.parts[2]));
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "ajar/core/error.h"
+#include "ajar/core/srgb.h"
 #include "ajar/scene/geometry.h"
 #include "obj.h"
 #include "parts.h"
@@ -193,7 +194,7 @@ void obj(Params& p, Shape& shape, const MeshPart& part) {
 
 // Colours of vertices that are encoded as sRGB, as linear ones.
 void decode(std::vector<Rgb>& colors) {
-  const auto linear = [](float x) { return float(std::min(from_srgb(x), 1e30)); };  // finite
+  const auto linear = [](float x) { return float(std::min(decode_srgb(x), 1e30)); };  // finite
   for (Rgb& c : colors) c = {linear(c.x), linear(c.y), linear(c.z)};
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <sstream>
 
+#include "ajar/core/srgb.h"
 #include "loader.h"
 
 namespace ajar {
@@ -48,7 +49,7 @@ Rgb rgb_of(const Loader& loader, const Node& node, bool encoded) {
            fmt::format("\"{}\" should be one number, three or #rrggbb{}", value.substr(0, 80), about_suffix(value)));
     c = list->size() == 1 ? DVec3((*list)[0]) : DVec3((*list)[0], (*list)[1], (*list)[2]);
   }
-  return encoded ? Rgb(from_srgb(c.x), from_srgb(c.y), from_srgb(c.z)) : Rgb(c);
+  return encoded ? Rgb(decode_srgb(c.x), decode_srgb(c.y), decode_srgb(c.z)) : Rgb(c);
 }
 
 using List = std::vector<std::pair<double, double>>;
@@ -210,8 +211,6 @@ Rgb plugin_spectrum(Loader& loader, const Node& node, Colour kind) {
 }
 
 }  // namespace
-
-double from_srgb(double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); }
 
 Rgb colour_of(Loader& loader, const Node& node, Colour kind) {
   if (node.tag == "spectrum" || node.tag == "texture")
