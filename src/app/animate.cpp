@@ -134,14 +134,14 @@ void show(Work& w, int frame, const std::string& what, bool finished) {
 }
 
 void write_frame(Work& w, int frame, const Stage& stage, Run& run, const RenderState& state) {
-  const double wall = wall_seconds(), cpu = process_cpu_seconds();
+  Stopwatch watch;
   const Picture image = develop(state.film);
   Metadata data = metadata(run, state);
   data["ajar:frame"] = frame_key(w, frame, *stage.scene);
   data["ajar:mean"] = mean_of(image);
   write_png(frame_name(w.png, frame), image);
   run.triangles = count_triangles(*stage.scene), run.accel_bytes = stage.accel->bytes();
-  run.write_seconds = wall_seconds() - wall, run.write_cpu = process_cpu_seconds() - cpu;
+  watch.add_to(run.write_seconds, run.write_cpu);
   nlohmann::ordered_json record = summary(run, state);
   record["frame"] = frame;
   record["coherent"] = w.arguments.coherent;
@@ -207,7 +207,7 @@ void save_for_later(Work& w) {
 
 // The fields of a frame from those of the frame before.
 Lessons teach_frame(Work& w, int frame, const Stage& stage) {
-  const double wall = wall_seconds(), cpu = process_cpu_seconds();
+  Stopwatch watch;
   Lessons lessons;
   const Carried* before = w.sequence.coherence.fields && w.carried ? &*w.carried : nullptr;
   std::optional<Fields> fields = teach(*stage.scene, *stage.accel, frame_options(w, frame, *stage.scene), w.sequence,
@@ -219,7 +219,7 @@ Lessons teach_frame(Work& w, int frame, const Stage& stage) {
   if (!fields) interrupted(frame);
   const FileHistory files = with_frame(w.carried ? w.carried->files : FileHistory{}, stage.scene->content);
   w.carried = Carried{uint32_t(frame), std::move(*fields), files};
-  lessons.seconds = wall_seconds() - wall, lessons.cpu_seconds = process_cpu_seconds() - cpu;
+  watch.add_to(lessons.seconds, lessons.cpu_seconds);
   return lessons;
 }
 

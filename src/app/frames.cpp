@@ -16,16 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Follows wall and CPU time.
-struct Clock {
-  double wall = wall_seconds(), cpu = process_cpu_seconds();
-  void lap(double& seconds, double& cpu_seconds) {
-    const double w = wall_seconds(), c = process_cpu_seconds();
-    seconds = w - wall, cpu_seconds = c - cpu;
-    wall = w, cpu = c;
-  }
-};
-
 double number_or(const Metadata& metadata, const std::string& name, double otherwise) {
   const auto found = metadata.find(name);
   if (found == metadata.end() || !std::holds_alternative<double>(found->second)) return otherwise;
@@ -165,17 +155,17 @@ bool has_masks(const Scene& scene) {
 
 Stage set_up(Shooting& s, int frame, const Stage* before) {
   Stage stage;
-  Clock clock;
+  Stopwatch watch;
   stage.scene = load_frame(s, frame);
   if (before) stage.moved = find_motion(*before->scene, *stage.scene);
-  clock.lap(stage.load_seconds, stage.load_cpu);
+  watch.add_to(stage.load_seconds, stage.load_cpu);
   const bool masked = has_masks(*stage.scene) || (before && has_masks(*before->scene));
   if (before && before->accel && stage.moved.empty() && !masked) {
     stage.accel = before->accel, stage.built_for = before->built_for;
   } else {
     stage.accel = std::make_shared<Accel>(*stage.scene), stage.built_for = stage.scene;
   }
-  clock.lap(stage.build_seconds, stage.build_cpu);
+  watch.add_to(stage.build_seconds, stage.build_cpu);
   return stage;
 }
 

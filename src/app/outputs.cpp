@@ -216,11 +216,10 @@ void write_record(const RenderArguments& a, const Run& run, const RenderState& s
 }
 
 void write_image(const RenderArguments& a, const Scene& scene, const Accel& accel, Run& run, const RenderState& state) {
-  const double wall = wall_seconds(), cpu = process_cpu_seconds();
+  Stopwatch watch;
   if (!is_png(a.out)) write_exr(a.out, image_of(a, scene, accel, state), metadata(run, state), a.half);
   if (is_png(a.out)) write_png(a.out, develop(state.film));
-  run.write_seconds = wall_seconds() - wall;
-  run.write_cpu = process_cpu_seconds() - cpu;
+  watch.add_to(run.write_seconds, run.write_cpu);
   write_record(a, run, state);
   if (!a.quiet) say(stdout, "{}\n", a.out);
 }

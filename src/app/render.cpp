@@ -244,7 +244,7 @@ Run run_of(const RenderArguments& a, Scene& scene) {
 }
 
 void run_render(RenderArguments a) {
-  const double wall0 = wall_seconds(), cpu0 = process_cpu_seconds();
+  Stopwatch watch;
   if (a.out.empty()) a.out = std::filesystem::path(a.scene).stem().string() + ".exr";
   check_outputs(a);
   if (!a.resume.empty() && a.integrator.empty() && (a.plan.empty() || a.plan == "all" || a.plan == "none"))
@@ -256,10 +256,9 @@ void run_render(RenderArguments a) {
   Run run = run_of(a, scene);
   std::optional<Picture> reference = read_reference(a, scene.camera);
   if (!a.quiet) say_notes(scene.notes);
-  const double wall1 = wall_seconds(), cpu1 = process_cpu_seconds();
-  run.load_seconds = wall1 - wall0, run.load_cpu = cpu1 - cpu0;
+  watch.add_to(run.load_seconds, run.load_cpu);
   const Accel accel(scene);
-  run.build_seconds = wall_seconds() - wall1, run.build_cpu = process_cpu_seconds() - cpu1;
+  watch.add_to(run.build_seconds, run.build_cpu);
   run.accel_bytes = accel.bytes();
   catch_stop();
   note_integrator(a, run);

@@ -1,4 +1,4 @@
-#include "clock.h"
+#include "ajar/render/clock.h"
 
 #include <chrono>
 #include <ctime>

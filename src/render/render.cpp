@@ -9,7 +9,6 @@
 #include "ajar/field/walls.h"
 #include "batch.h"
 #include "chunk.h"
-#include "clock.h"
 #include "integrators.h"
 #include "pass.h"
 #include "start.h"

@@ -7,6 +7,7 @@
 #include "ajar/film/pyramid.h"
 #include "ajar/render/adaptive.h"
 #include "ajar/render/balance.h"
+#include "ajar/render/clock.h"
 #include "ajar/render/learning.h"
 #include "ajar/render/ledger.h"
 #include "ajar/render/options.h"
@@ -74,9 +75,6 @@ Picture render_features(const Scene& scene, const Accel& accel, uint64_t seed, i
 /// not to be gone on from then.
 void show_merged(RenderState& state);
 
-/// Seconds on the wall and of all threads of this process.
-double wall_seconds();
-double process_cpu_seconds();
 /// Whether a share of a time limit is over, wall or CPU.
 bool is_over(const RenderOptions& options, const RenderStats& stats, double share);
 

@@ -1,8 +1,12 @@
 // Enters: the clocks of the wall and of this process.
-// Leaves: sums of the time that was spent on something.
+// Leaves: what they say, and sums of the time that was spent on something.
 #pragma once
 
 namespace ajar {
+
+/// Seconds on the wall and of all threads of this process.
+double wall_seconds();
+double process_cpu_seconds();
 
 struct Stopwatch {
   Stopwatch();  ///< starts
