@@ -12,6 +12,7 @@
 #include "ajar/core/error.h"
 #include "ajar/core/files.h"
 #include "ajar/core/parallel.h"
+#include "ajar/report/metrics.h"
 #include "animate_files.h"
 #include "animate_options.h"
 #include "command_threads.h"

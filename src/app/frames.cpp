@@ -91,12 +91,6 @@ Picture read_frame(const std::string& path) {
   }
 }
 
-double mean_of(const Picture& image) {
-  double sum = 0;
-  for (const float x : image.pixels) sum += x;
-  return sum / double(image.pixels.size());
-}
-
 std::optional<double> time_at(const Timeline& t, int frame) {
   if (!t.has_time) return {};
   if (t.frames.count == 1) return t.first_time;

@@ -56,9 +56,6 @@ std::string describe(const Timeline& timeline, int frame);
 /// The image of a finished frame. Throws Error, which says what to do about a damaged one.
 Picture read_frame(const std::string& path);
 
-/// Of R, G and B.
-double mean_of(const Picture& image);
-
 /// The newest carried fields in a folder that belong to this key and to no frame after the given one, and suit.
 std::optional<Carried> find_carried(const std::string& folder, const std::string& key, int last,
                                     const std::function<bool(const Carried&)>& suits);

@@ -1,7 +1,6 @@
 #include "summary.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -19,12 +18,6 @@ const char* name_of(Heuristic h) { return h == Heuristic::power ? "power" : "bal
 const char* name_of(SamplerKind k) { return k == SamplerKind::sobol ? "sobol" : "independent"; }
 
 const char* name_of(Guided g) { return g == Guided::both ? "both" : g == Guided::camera ? "camera" : "light"; }
-
-double peak_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return double(usage.ru_maxrss) * 1024;
-}
 
 double per(double amount, double of) { return of > 0 ? amount / of : 0; }
 

@@ -1,5 +1,7 @@
 #include "ajar/report/account.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -88,6 +90,12 @@ void add_account(Json& record, const RenderState& state) {
   record["strategies"] = strategies_json(state.stats.ledger);
   record["caustics"] = per(state.stats.ledger.caustics, total_energy(state.stats.ledger));
   if (const Json merges = merges_json(state.stats.ledger); !merges.empty()) record["merges"] = merges;
+}
+
+double peak_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return double(usage.ru_maxrss) * 1024;
 }
 
 }  // namespace ajar

@@ -28,13 +28,13 @@ void pixel_metrics(const std::array<Plane, 3>& image, const std::array<Plane, 3>
   metrics.relmse_trimmed = trimmed_mean(std::move(errors));
 }
 
+}  // namespace
+
 double mean_of(const Picture& picture) {
   double sum = 0;
   for (const float value : picture.pixels) sum += value;
   return sum / double(picture.pixels.size());
 }
-
-}  // namespace
 
 void require_comparable(const Picture& picture, const std::string& file) {
   std::array<size_t, 3> rgb;

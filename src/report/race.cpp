@@ -1,7 +1,5 @@
 #include "race.h"
 
-#include <sys/resource.h>
-
 #include <cmath>
 
 #include "ajar/report/account.h"
@@ -11,12 +9,6 @@ namespace ajar {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-double peak_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return double(usage.ru_maxrss) * 1024;
-}
 
 Json measure(const RenderState& state, const Picture& reference) {
   const Metrics m = compare(develop(state.film), reference, false);

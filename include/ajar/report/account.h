@@ -19,4 +19,7 @@ nlohmann::ordered_json phases_json(double seconds, double between_passes, const 
 /// time}, energy as a share of the image's, time as a share of tracing.
 void add_account(nlohmann::ordered_json& record, const RenderState& state);
 
+/// The most memory that this process has had.
+double peak_bytes();
+
 }  // namespace ajar

@@ -55,6 +55,9 @@ bool has_variance(const Picture& picture);
 /// Error.
 Picture with_variance(const Picture& image, const Picture& variance);
 
+/// Of all values of all channels.
+double mean_of(const Picture& picture);
+
 /// The signed relative difference of the luminances, (I - R) / (|R| + 0.01), in false colour: white for none, red where
 /// the image is brighter, blue where it is darker; the tint grows with the square root and is full where the
 /// image is twice as bright, or black. To be written by write_png.
