@@ -52,13 +52,13 @@ void add_options(CLI::App& command, AnimateArguments& arguments) {
   c->add_option(
        "--coherent", a->coherent,
        "what frames have in common: on (learned fields and random numbers), fields, numbers or off (default on)")
-      ->check(CLI::IsMember(std::vector<std::string>(std::begin(coherences), std::end(coherences))));
+      ->check(CLI::IsMember(listed(coherences)));
   c->add_option("--forget", a->forget, "share of the fields' evidence that lives on to the next frame (default 0.8)")
       ->check(number(0, 0.999));
   c->add_option("--teach", a->teach, "passes that teach the fields of a frame before it is rendered (default 1)")
       ->check(whole(1, 4096));
   c->add_option("--guide", a->guide, "which subpaths the learned fields guide: both, camera or light (default both)")
-      ->check(CLI::IsMember({"both", "camera", "light"}));
+      ->check(CLI::IsMember(listed(guided_names)));
   c->add_option("--field-memory", a->field_memory, "memory that learned fields may take: 512K, 32M (default), 1G");
   c->add_flag("--even", a->even, "as for ajar render");
   c->add_flag("--limit-fireflies", a->limit_fireflies, "as for ajar render");
@@ -91,7 +91,7 @@ RenderOptions render_options(const AnimateArguments& a, const Scene& scene) {
   o.limit_fireflies = a.limit_fireflies;
   check_learning(a, o.integrator);
   check_guide(a.guide, o.integrator);
-  o.learn.guided = a.guide == "camera" ? Guided::camera : a.guide == "light" ? Guided::light : Guided::both;
+  o.learn.guided = Guided(index_of(guided_names, a.guide));
   o.learn.memory = parse_bytes("--field-memory", a.field_memory.empty() ? usual_memory : a.field_memory);
   return o;
 }

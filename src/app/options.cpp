@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
-#include <string>
 
 namespace ajar {
 namespace {
@@ -37,6 +37,11 @@ std::string decimal(std::string& text) {
 
 CLI::Validator whole(uint64_t least, uint64_t most) { return within(least, most, "whole number"); }
 CLI::Validator number(double least, double most) { return within(least, most, "number"); }
+
+std::vector<std::string> listed(std::span<const char* const> names) { return {names.begin(), names.end()}; }
+size_t index_of(std::span<const char* const> names, const std::string& name) {
+  return size_t(std::find(names.begin(), names.end(), name) - names.begin());
+}
 
 void add_threads(CLI::App& command, int& threads) {
   command.add_option("--threads", threads, "threads (default: all)")->check(whole(1, 4096));

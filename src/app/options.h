@@ -4,6 +4,9 @@
 
 #include <CLI/CLI.hpp>
 #include <optional>
+#include <span>
+#include <string>
+#include <vector>
 
 namespace ajar {
 
@@ -11,6 +14,10 @@ namespace ajar {
 CLI::Validator whole(uint64_t least, uint64_t most);
 /// The same for any number.
 CLI::Validator number(double least, double most);
+/// For check(CLI::IsMember()): the names of an enumeration's values.
+std::vector<std::string> listed(std::span<const char* const> names);
+/// The value whose name that is; the check let no other pass.
+size_t index_of(std::span<const char* const> names, const std::string& name);
 /// The option --threads; 0 where it is not given: all.
 void add_threads(CLI::App& command, int& threads);
 /// The option --at of commands that look at one moment.

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <charconv>
-#include <span>
 
 #include "ajar/core/error.h"
 #include "ajar/render/plan.h"
@@ -30,13 +29,6 @@ float parse_merge_radius(float radius, const std::string& integrator) {
   return radius;
 }
 
-// Index of a name that the option's check let pass.
-template <class Names>
-size_t index_of(const Names& names, const std::string& name) {
-  return size_t(std::find(std::begin(names), std::end(names), name) - std::begin(names));
-}
-std::vector<std::string> listed(std::span<const char* const> names) { return {names.begin(), names.end()}; }
-
 LearnOptions learn_options(const RenderArguments& a, const std::string& integrator, bool may_learn) {
   const std::pair<const char*, bool> asked[] = {{"--save-fields", !a.save_fields.empty()},
                                                 {"--load-fields", !a.load_fields.empty()},
@@ -60,7 +52,7 @@ LearnOptions learn_options(const RenderArguments& a, const std::string& integrat
   check_guide(a.guide, integrator);
   LearnOptions o;
   o.lights = lights || a.light_choice.empty();
-  o.guided = a.guide == "camera" ? Guided::camera : a.guide == "light" ? Guided::light : Guided::both;
+  o.guided = Guided(index_of(guided_names, a.guide));
   if (!a.field_structure.empty()) o.structure = Structure(index_of(structure_names, a.field_structure));
   if (!a.field_rule.empty()) o.rule = Rule(index_of(rule_names, a.field_rule));
   if (a.field_rate == "visits") o.forget = 1;
@@ -145,9 +137,9 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
   c->add_option("--roulette-depth", a->roulette_depth, "edges of a subpath before Russian roulette begins (default 5)")
       ->check(whole(1, 1 << 20));
   c->add_option("--heuristic", a->heuristic, "of multiple importance sampling: power (default) or balance")
-      ->check(CLI::IsMember({"power", "balance"}));
+      ->check(CLI::IsMember(listed(heuristic_names)));
   c->add_option("--sampler", a->sampler, "sobol (Owen-scrambled; default) or independent")
-      ->check(CLI::IsMember({"sobol", "independent"}));
+      ->check(CLI::IsMember(listed(sampler_names)));
   c->add_option("-D", a->defines, "name=value: a parameter of the scene")->allow_extra_args(false);
   add_time(*c, a->at);
   c->add_flag("--even", a->even,
@@ -169,7 +161,7 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
   c->add_option("--resume", a->resume,
                 "checkpoint to go on from, by its own integrator; its time and samples count in all limits");
   c->add_option("--guide", a->guide, "which subpaths the learned fields guide: both (default), camera or light")
-      ->check(CLI::IsMember({"both", "camera", "light"}));
+      ->check(CLI::IsMember(listed(guided_names)));
   c->add_option("--field-memory", a->field_memory, "memory that all that is learned may take: 512K, 8M (default), 1G");
   c->add_option("--field-structure", a->field_structure, "of learned fields: adaptive (default), grid or probes")
       ->check(CLI::IsMember(listed(structure_names)));
@@ -280,8 +272,8 @@ RenderOptions render_options(const RenderArguments& a, Scene& scene, bool planne
   if (a.heuristic == "balance" && !weighs_strategies(o.integrator))
     throw Error(fmt::format("--heuristic balance: {} has one way to each path, and nothing to weigh; leave it out",
                             o.integrator));
-  o.heuristic = a.heuristic == "balance" ? Heuristic::balance : Heuristic::power;
-  o.sampler = a.sampler == "independent" ? SamplerKind::independent : SamplerKind::sobol;
+  o.heuristic = Heuristic(index_of(heuristic_names, a.heuristic));
+  o.sampler = SamplerKind(index_of(sampler_names, a.sampler));
   o.even = a.even;
   o.limit_fireflies = a.limit_fireflies;
   o.techniques = !a.techniques.empty();

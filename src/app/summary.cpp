@@ -14,11 +14,6 @@
 namespace ajar {
 namespace {
 
-const char* name_of(Heuristic h) { return h == Heuristic::power ? "power" : "balance"; }
-const char* name_of(SamplerKind k) { return k == SamplerKind::sobol ? "sobol" : "independent"; }
-
-const char* name_of(Guided g) { return g == Guided::both ? "both" : g == Guided::camera ? "camera" : "light"; }
-
 double per(double amount, double of) { return of > 0 ? amount / of : 0; }
 
 nlohmann::ordered_json options_json(const Run& run, const Film& film) {
@@ -36,8 +31,8 @@ nlohmann::ordered_json options_json(const Run& run, const Film& film) {
                               {"crop_y", film.y0},
                               {"max_depth", o.max_depth},
                               {"roulette_depth", o.roulette_depth},
-                              {"heuristic", name_of(o.heuristic)},
-                              {"sampler", name_of(o.sampler)},
+                              {"heuristic", heuristic_names[size_t(o.heuristic)]},
+                              {"sampler", sampler_names[size_t(o.sampler)]},
                               {"next_event", o.next_event},
                               {"defines", run.defines}};
   if (run.at) j["at"] = *run.at;
@@ -50,7 +45,7 @@ nlohmann::ordered_json options_json(const Run& run, const Film& film) {
   if (o.final_gather > 0) j["final_gather"] = o.final_gather;
   if (!is_guided(o.integrator)) return j;
   j["leaves_out"] = may_leave_out(o);
-  j["guide"] = name_of(learn_options(o).guided);
+  j["guide"] = guided_names[size_t(learn_options(o).guided)];
   j["field_memory"] = o.learn.memory;
   j["field_structure"] = structure_names[size_t(o.learn.structure)];
   j["field_rule"] = rule_names[size_t(o.learn.rule)];

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <set>
+#include <span>
 
 #include "ajar/core/error.h"
 #include "ajar/core/files.h"
@@ -19,12 +20,13 @@ namespace fs = std::filesystem;
 
 constexpr double longest = 1e7;  // seconds
 
-const std::vector<std::string> heuristics = {"power", "balance"}, samplers = {"sobol", "independent"};
-const std::vector<std::string> structures(std::begin(structure_names), std::end(structure_names)),
-    rules(std::begin(rule_names), std::end(rule_names)), rates = {"recent", "visits"};
+std::vector<std::string> listed(std::span<const char* const> names) { return {names.begin(), names.end()}; }
+
+const std::vector<std::string> heuristics = listed(heuristic_names), samplers = listed(sampler_names),
+                               structures = listed(structure_names), rules = listed(rule_names),
+                               guided = listed(guided_names), rates = {"recent", "visits"};
 const std::vector<std::string> plans = {"auto", "all"};  // whether a guided integrator leaves out what does not pay
 const std::vector<std::string> light_choices = {"tree", "learned"};
-const std::vector<std::string> guided = {"both", "camera", "light"};  // in the order of the enumerators
 
 // Why an option would do nothing, as the command line has it; empty if it does something.
 std::string if_guided(const RenderOptions& o) {
@@ -80,16 +82,10 @@ const Option options_table[] = {
     {"integrator",
      [](RenderOptions& o, const Element& e) { o.integrator = integrator_names()[choice(e, integrator_names())]; },
      [](const RenderOptions& o) { return Json(o.integrator); }},
-    {"heuristic",
-     [](RenderOptions& o, const Element& e) {
-       o.heuristic = choice(e, heuristics) == 0 ? Heuristic::power : Heuristic::balance;
-     },
-     [](const RenderOptions& o) { return Json(heuristics[o.heuristic == Heuristic::power ? 0 : 1]); }, if_it_weighs},
-    {"sampler",
-     [](RenderOptions& o, const Element& e) {
-       o.sampler = choice(e, samplers) == 0 ? SamplerKind::sobol : SamplerKind::independent;
-     },
-     [](const RenderOptions& o) { return Json(samplers[o.sampler == SamplerKind::sobol ? 0 : 1]); }},
+    {"heuristic", [](RenderOptions& o, const Element& e) { o.heuristic = Heuristic(choice(e, heuristics)); },
+     [](const RenderOptions& o) { return Json(heuristics[size_t(o.heuristic)]); }, if_it_weighs},
+    {"sampler", [](RenderOptions& o, const Element& e) { o.sampler = SamplerKind(choice(e, samplers)); },
+     [](const RenderOptions& o) { return Json(samplers[size_t(o.sampler)]); }},
     {"roulette_depth", [](RenderOptions& o, const Element& e) { o.roulette_depth = int(integer(e, 1, deepest)); },
      [](const RenderOptions& o) { return Json(o.roulette_depth); }},
     {"plan", [](RenderOptions& o, const Element& e) { o.leaves_out = choice(e, plans) == 0; },

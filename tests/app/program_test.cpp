@@ -213,7 +213,7 @@ TEST_F(Program, WhatIsNoValueIsToldWithTheCure) {
         {"render box.xml -D", "-D: has no value; write one after it"},
         {"compare a b --crop 1", "--crop: takes 4 values, not 1; write them all"},
         {"compare a b c", "c: more words than are asked for; leave them out"},
-        {"render box.xml --heuristic best", "--heuristic best: is none of power,balance; write one"},
+        {"render box.xml --heuristic best", "--heuristic best: is none of balance,power; write one"},
         {"animate box.xml -o f_%d.exr --forget 1", "--forget: 1 is no number from 0 to 0.999"}}) {
     EXPECT_EQ(run("\"$ajar\" " + std::string(words)), 2) << words;
     EXPECT_EQ(said().find("ajar: " + std::string(says)), 0u) << words << ": " << said();

@@ -17,6 +17,7 @@ inline uint64_t hash(uint64_t a, uint64_t b) { return mix64(a ^ mix64(b)); }
 
 enum class Side : uint8_t { camera, light };
 enum class SamplerKind : uint8_t { sobol, independent };
+inline constexpr const char* sampler_names[] = {"sobol", "independent"};
 
 /// Two numbers at once, in the halves of one word: bits reversed, each in its half.
 inline uint64_t reverse_both(uint64_t x) {

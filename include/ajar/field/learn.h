@@ -9,6 +9,7 @@ namespace ajar {
 
 /// Whose subpaths the fields guide. Both fields are learned in any case, and both tell roulette what to expect.
 enum class Guided : uint8_t { both, camera, light, neither };
+inline constexpr const char* guided_names[] = {"both", "camera", "light"};  ///< that a user may choose among
 
 struct LearnOptions {
   Structure structure = Structure::adaptive;  ///< of fields that start from nothing

@@ -9,6 +9,7 @@
 namespace ajar {
 
 enum class Heuristic : uint8_t { balance, power };  ///< power: exponent 2 (Veach 1997, section 9.2.3)
+inline constexpr const char* heuristic_names[] = {"balance", "power"};
 
 /// Ratio of densities under the heuristic.
 inline double raise(Heuristic h, double ratio) { return h == Heuristic::power ? ratio * ratio : ratio; }
