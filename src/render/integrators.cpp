@@ -8,16 +8,22 @@
 namespace ajar {
 namespace {
 
-constexpr Integrator integrators[] = {{"path", trace_path, false},
-                                      {"bdpt", trace_bdpt, true},
-                                      {"light", trace_light, true},
-                                      {"guided-path", trace_bdpt, false, true},
-                                      {"guided-bdpt", trace_bdpt, true, true, trace_light_half},
-                                      {"vcm", trace_bdpt, true, false, trace_light_half, true},
-                                      {"guided-vcm", trace_bdpt, true, true, trace_light_half, true},
-                                      {"photon", trace_photon, false, false, trace_light_half, true},
-                                      {"vpl", trace_vpl, true, true, trace_light_half, false, true},
-                                      {"plain-vpl", trace_vpl, true, false, nullptr, false, true}};
+constexpr Integrator integrators[] = {
+    {.name = "path", .trace = trace_path},
+    {.name = "bdpt", .trace = trace_bdpt, .splats = true},
+    {.name = "light", .trace = trace_light, .splats = true},
+    {.name = "guided-path", .trace = trace_bdpt, .guided = true},
+    {.name = "guided-bdpt", .trace = trace_bdpt, .splats = true, .guided = true, .light_half = trace_light_half},
+    {.name = "vcm", .trace = trace_bdpt, .splats = true, .light_half = trace_light_half, .merges = true},
+    {.name = "guided-vcm",
+     .trace = trace_bdpt,
+     .splats = true,
+     .guided = true,
+     .light_half = trace_light_half,
+     .merges = true},
+    {.name = "photon", .trace = trace_photon, .light_half = trace_light_half, .merges = true},
+    {.name = "vpl", .trace = trace_vpl, .splats = true, .guided = true, .light_half = trace_light_half, .vpls = true},
+    {.name = "plain-vpl", .trace = trace_vpl, .splats = true, .vpls = true}};
 
 // Where no light vertices are joined, which bring what a cosine lobe finds badly: strata that could halve its variance
 // guide (G14).

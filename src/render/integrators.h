@@ -7,9 +7,9 @@
 namespace ajar {
 
 struct Integrator {
-  const char* name;
-  Trace trace;
-  bool splats;  ///< light subpaths reach the film
+  const char* name = nullptr;
+  Trace trace = nullptr;
+  bool splats = false;  ///< light subpaths reach the film
   bool guided = false;
   Trace light_half = nullptr;  ///< what is traced before, of all samples of a chunk or batch
   bool merges = false;
