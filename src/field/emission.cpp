@@ -1,6 +1,8 @@
 #include "ajar/field/emission.h"
 
 #include "ajar/core/warp.h"
+#include "ajar/field/guide.h"
+#include "ajar/field/nextevent.h"
 #include "ajar/scene/geometry.h"
 
 namespace ajar {
@@ -124,6 +126,21 @@ bool guide_direction(const Fields* fields, Vec2 u, EmissionSample& out) {
   return out.pdf_direction > 0;
 }
 
+// Next-event rays of camera subpaths at the vertex, per area of the disk across the scene and solid angle. 0: unknown.
+double camera_rays(const Fields& fields, const Guide& guide, const Vec3& wi, double pdf) {
+  const float cosine = std::abs(glm::dot(guide.ng, wi));
+  if (guide.cell == none || !(cosine > 1e-4f)) return 0;
+  return double(fields.q.cells[guide.cell].visits) * pdf / double(cosine);
+}
+
+// What a ray from the disk brings per watt. Rays of both sides teach, weighed by what both make of them, relative to
+// even starts.   (V8)
+void record_place(const Scene& scene, const Fields& fields, Training& training, uint32_t region, const Vec2& square,
+                  float per_watt, double of_light, double of_camera, float share) {
+  const double even = double(inv_pi) / sqr(double(scene.radius));
+  record_square(fields.disk, training.disk, region, square, per_watt, share * float(even / (of_light + of_camera)));
+}
+
 }  // namespace
 
 bool sample_emission(const Scene& scene, const Fields* fields, float u_choice, const Vec2& u_position,
@@ -162,7 +179,7 @@ EmissionPdf pdf_emission(const Scene& scene, const Fields* fields, const LightPo
 }
 
 void record_start(const Scene& scene, const Fields& fields, Training& training, const EmissionSample& start,
-                  float brings, float per_watt) {
+                  float brings, float per_watt, const Guide* straight) {
   const LightCut* cut = cut_of(&fields);
   if (cut && start.point.place != none) {
     const LightTree& tree = scene.light_tree;
@@ -174,9 +191,24 @@ void record_start(const Scene& scene, const Fields& fields, Training& training, 
   if (!start.point.infinite) return;
   const uint32_t region = start_at(scene, &fields, start.point, start.direction).region;
   if (region >= fields.disk.cells.size()) return;
-  const float even = inv_pi / (scene.radius * scene.radius);
-  record_square(fields.disk, training.disk, region, square_of(scene, start.point.p, start.direction), per_watt,
-                even / start.pdf_position);
+  double of_camera = 0;
+  if (straight && straight->cell != none)
+    of_camera = camera_rays(fields, *straight, start.direction,
+                            pdf_next_event(scene, *straight, start.point, -start.direction)) /
+                double(start.pdf_direction);
+  record_place(scene, fields, training, region, square_of(scene, start.point.p, start.direction), per_watt,
+               start.pdf_position, of_camera, 1);
+}
+
+void record_start(const Scene& scene, const Fields& fields, Training& training, const Guide& guide,
+                  const LightPoint& point, const Vec3& wi, double pdf, int count) {
+  const Start start = start_at(scene, &fields, point, -wi);
+  const double of_camera = start.density > 0 ? camera_rays(fields, guide, wi, pdf) / start.density : 0;
+  if (!(of_camera > 0) || start.region >= fields.disk.cells.size()) return;
+  const Vec2 square = square_of(scene, guide.p, -wi);
+  const float per_watt = scatters(guide) * fields.w.cells[guide.cell].total;
+  record_place(scene, fields, training, start.region, square, per_watt,
+               double(disk_pdf(scene, &fields, start.region, square)), of_camera, 1 / float(count));
 }
 
 }  // namespace ajar

@@ -18,9 +18,14 @@ float expected_pixel(const Fields* fields, const Vertex& v) {
   return known ? luminance(v.beta) * expected_radiance(*fields, v.guide, 0.002f) : 0;
 }
 
-// Which light the vertex asked for, and what it got from it: nothing where something is in the way.
-void teach_light(const Work& work, const Vertex& v, LightChances& chances, const LightPoint& point, float arrives) {
-  record_next_event(*work.job.scene, v.guide, chances, *work.job.training, point, arrives);
+// Which light the vertex asked for, with one ray of count, and what it got from it: nothing where something is in the
+// way.
+void teach_light(const Work& work, const Vertex& v, LightChances& chances, const Candidate& c, bool lit, int count) {
+  const Job& job = work.job;
+  record_next_event(*job.scene, v.guide, chances, *job.training, c.point, lit ? max_component(c.arrives) : 0);
+  if (lit && job.guided && c.point.infinite)
+    record_start(*job.scene, *job.walk.fields, *job.training, v.guide, c.point, c.light_found.w,
+                 c.light.own * c.shares.light_first, count);
   charge(work.scratch, work.scratch.ledger->learn_ticks);
 }
 
@@ -83,7 +88,7 @@ void join_next_event(Work& work, float worth) {
     charge_join(work.scratch, 1, t);
     if (!work.sample.teaches) continue;
     if (lit) received += luminance(c.arrives) * share_of_next_event(work, c);
-    teach_light(work, v, chances, c.point, lit ? max_component(c.arrives) : 0);
+    teach_light(work, v, chances, c, lit, count);
   }
   if (!work.sample.teaches) return;
   teach_direct(work, v, received / float(std::max(count, 1)));

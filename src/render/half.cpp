@@ -10,12 +10,14 @@ namespace {
 void teach_start(const Work& work, const Subpath& light, const Walk& walk, bool arrived) {
   if (!work.sample.teaches || !work.job.guided) return;
   float brings = 0, per_watt = 0;
+  const Guide* straight = nullptr;
   if (arrived) {
     const Vertex& first = light[light.n - 1];
+    if (light.n == 2) straight = &first.guide;
     const float started = luminance(light[1].beta);
     brings = promise(first.guide, first.beta).all, per_watt = started > 0 ? brings / started : 0;
   }
-  record_start(*work.job.scene, *work.job.walk.fields, *work.job.training, walk.start, brings, per_watt);
+  record_start(*work.job.scene, *work.job.walk.fields, *work.job.training, walk.start, brings, per_watt, straight);
   charge(work.scratch, work.scratch.ledger->learn_ticks);
 }
 

@@ -17,8 +17,12 @@ bool sample_emission(const Scene& scene, const Fields* fields, float u_choice, c
 /// The same densities; for infinite lights point.p is any point of the ray.
 EmissionPdf pdf_emission(const Scene& scene, const Fields* fields, const LightPoint& point, const Vec3& direction);
 /// What a light subpath that started here is expected to bring (Promise of its first vertex, of all that was emitted
-/// and of one watt; 0 where it hit nothing).
+/// and of one watt; 0 where it hit nothing). straight: that vertex, where nothing lies between; null else.
 void record_start(const Scene& scene, const Fields& fields, Training& training, const EmissionSample& start,
-                  float brings, float per_watt);
+                  float brings, float per_watt, const Guide* straight);
+/// A free ray of next-event estimation to an infinite light, one of count that a camera vertex sent: how a light
+/// subpath would have come there, so what it would have taught. pdf: of wi, the choice of the light included.
+void record_start(const Scene& scene, const Fields& fields, Training& training, const Guide& guide,
+                  const LightPoint& point, const Vec3& wi, double pdf, int count);
 
 }  // namespace ajar

@@ -1,0 +1,96 @@
+// Where light subpaths start on the disk across the scene: next-event rays of camera vertices teach it what light
+// subpaths would, and find what they hardly come by.
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "kit/stage.h"
+#include "train.h"
+
+namespace ajar {
+namespace {
+
+int64_t sum(const std::vector<int64_t>& all) { return std::accumulate(all.begin(), all.end(), int64_t(0)); }
+
+// What light subpaths alone teach the disk: first vertices are told, or kept back.
+void teach_by_light(const Scene& scene, const Accel& accel, const Fields& fields, int paths, bool told, Training& out) {
+  WalkOptions options;
+  options.fields = &fields;
+  for (int i = 0; i < paths; ++i) {
+    Sampler sampler = make_sampler(SamplerKind::independent, 7, Side::light, uint64_t(i), 0);
+    Subpath path;
+    Walk walk;
+    Surface surface;
+    if (!start_light(scene, options, sampler, path, walk)) continue;
+    const bool hit = step(scene, accel, options, path, walk, surface);
+    const float per_watt = hit ? promise(path[1].guide, Rgb(1)).all : 0;
+    record_start(scene, fields, out, walk.start, 0, per_watt, hit && told ? &path[1].guide : nullptr);
+  }
+}
+
+// What next-event rays of camera vertices add. Each vertex sends so many, which is no more evidence than one.
+void teach_by_camera(const Scene& scene, const Accel& accel, const Fields& fields, int paths, int rays, Training& out) {
+  WalkOptions options;
+  options.fields = &fields;
+  Subpath path;
+  for (int i = 0; i < paths; ++i) {
+    trace_subpath(scene, accel, options, Side::camera, uint64_t(i), 77, 6, path);
+    for (int t = 2; t <= path.n; ++t) {
+      const Vertex& v = path[t - 1];
+      if (!connectable(v.guide)) continue;
+      for (int k = 0; k < rays; ++k) {
+        Sampler s = make_sampler(SamplerKind::independent, 11, Side::camera, uint64_t(i), uint32_t(t * rays + k));
+        LightChances chances;
+        LightNumbers u;
+        Candidate c;
+        if (draw_light(scene, v.guide, s, u) && join_light(scene, &fields, path, t, chances, u, 1, c) &&
+            visible(accel, c.segment))
+          record_start(scene, fields, out, v.guide, c.point, c.light_found.w, c.light.own * c.shares.light_first, rays);
+      }
+    }
+  }
+}
+
+// A closed box with a hole in its lid, far from whose walls the ground goes on: hardly a light subpath comes in.
+Scene under_a_lid(LightKind kind) {
+  Scene scene;
+  scene.filter = make_filter(FilterKind::box);
+  set_camera(scene, {0, 0.8f, 1.9f}, {0, 0.5f, 0}, 60, 24, 24);
+  const uint32_t white = add_diffuse(scene, Rgb(0.7f));
+  add_quad(scene, {-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, white);  // the floor
+  for (const float x : {-2.0f, 2.0f}) add_quad(scene, {x, 0, -2}, {0, 0, 4}, {0, 2, 0}, white);
+  for (const float z : {-2.0f, 2.0f}) add_quad(scene, {-2, 0, z}, {4, 0, 0}, {0, 2, 0}, white);
+  add_quad(scene, {-2, 2, -2}, {4, 0, 0}, {0, 0, 1.6f}, white);  // the lid, round a hole of 0.8 x 0.8
+  add_quad(scene, {-2, 2, 0.4f}, {4, 0, 0}, {0, 0, 1.6f}, white);
+  add_quad(scene, {-2, 2, -0.4f}, {1.6f, 0, 0}, {0, 0, 0.8f}, white);
+  add_quad(scene, {0.4f, 2, -0.4f}, {1.6f, 0, 0}, {0, 0, 0.8f}, white);
+  add_quad(scene, {-5, -0.1f, 5}, {10, 0, 0}, {0, 0, -10}, add_diffuse(scene, Rgb(0)));
+  Light& light = scene.lights[add_light(scene, kind, Rgb(1))];
+  light.direction = glm::normalize(Vec3(0.1f, -1, 0.05f));
+  finish(scene);
+  return scene;
+}
+
+// Both sides' records, weighed by both sides' densities, are light subpaths' in the mean: as much evidence, and as much
+// importance.
+TEST(Starts, BothSidesTeachTheSame) {
+  for (const LightKind kind : {LightKind::constant, LightKind::directional})
+    for (const int rays : {1, 4}) {
+      const Scene scene = under_a_lid(kind);
+      const Accel accel(scene);
+      const Fields fields = train(scene, accel, 6, 8000);
+      constexpr int paths = 200'000;
+      Training alone = start_training(fields), both = start_training(fields), light = start_training(fields);
+      teach_by_light(scene, accel, fields, paths, false, alone);
+      teach_by_light(scene, accel, fields, paths, true, both);
+      const double of_light = double(sum(both.disk.value));
+      teach_by_camera(scene, accel, fields, paths, rays, both);
+      const double value = double(sum(both.disk.value)), as_it_was = double(sum(alone.disk.value));
+      EXPECT_GT(value - of_light, 0.1 * value) << "cameras hardly teach: the test means little";
+      EXPECT_NEAR(value / as_it_was, 1, 0.06) << int(kind) << ' ' << rays;
+      EXPECT_NEAR(double(sum(both.disk.weight)) / double(sum(alone.disk.weight)), 1, 0.04) << int(kind) << ' ' << rays;
+    }
+}
+
+}  // namespace
+}  // namespace ajar
