@@ -120,6 +120,9 @@ struct Accel::Data {
 
 namespace {
 
+// Of a scene whose rays are longer, products of its coordinates with them would overflow.
+constexpr float largest_stretched = 1e8f;
+
 [[noreturn]] void refuse(RTCDevice device, const char* what) {
   throw Error(fmt::format("ray tracer: {} (error {}); is there enough memory?", what, int(rtcGetDeviceError(device))));
 }
@@ -210,6 +213,7 @@ Accel::Accel(const Scene& scene) : data_(std::make_unique<Data>()), first_instan
   rtcCommitScene(data.top.get());
   if (rtcGetDeviceError(device) != RTC_ERROR_NONE) refuse(device, "cannot build");
   top_ = data.top.get();
+  if (scene.radius > largest_stretched) stretch_ = 1;
 }
 
 Accel::~Accel() = default;
@@ -220,11 +224,11 @@ size_t Accel::bytes() const { return size_t(std::max<int64_t>(data_->bytes.load(
 
 namespace {
 
-RTCRay make_ray(const Vec3& o, const Vec3& d, float t_min, float t_max) {
+RTCRay make_ray(const Vec3& o, const Vec3& d, float t_min, float t_max, float stretch) {
   RTCRay ray;
   ray.org_x = o.x, ray.org_y = o.y, ray.org_z = o.z;
-  ray.dir_x = d.x, ray.dir_y = d.y, ray.dir_z = d.z;
-  ray.tnear = t_min, ray.tfar = t_max, ray.time = 0;
+  ray.dir_x = stretch * d.x, ray.dir_y = stretch * d.y, ray.dir_z = stretch * d.z;
+  ray.tnear = t_min / stretch, ray.tfar = t_max / stretch, ray.time = 0;
   ray.mask = ~0u, ray.id = 0, ray.flags = 0;
   return ray;
 }
@@ -235,12 +239,12 @@ bool Accel::intersect(const Vec3& o, const Vec3& d, float t_min, float t_max, Hi
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit r;
-  r.ray = make_ray(o, d, t_min, t_max);
+  r.ray = make_ray(o, d, t_min, t_max, stretch_);
   r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(static_cast<RTCScene>(top_), &context, &r);
   if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-  hit.t = r.ray.tfar;
+  hit.t = r.ray.tfar * stretch_;
   hit.shape = r.hit.geomID;
   hit.prim = r.hit.primID;
   hit.instance = r.hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? none : r.hit.instID[0] - first_instance_;
@@ -251,7 +255,7 @@ bool Accel::intersect(const Vec3& o, const Vec3& d, float t_min, float t_max, Hi
 bool Accel::occluded(const Vec3& o, const Vec3& d, float t_max) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  RTCRay ray = make_ray(o, d, 0, t_max);
+  RTCRay ray = make_ray(o, d, 0, t_max, stretch_);
   rtcOccluded1(static_cast<RTCScene>(top_), &context, &ray);
   return ray.tfar < 0;
 }

@@ -325,6 +325,41 @@ TEST(Accel, ClosedMeshesDoNotLeak) {
   }
 }
 
+// The same triangles at another size, alone or in an instance that makes them as large again, are hit where they were:
+// within, not at their first corner.
+TEST(Accel, SmallTrianglesAreHitWithin) {
+  Random random{std::mt19937_64(8)};
+  const Mesh mesh = ball(4, 0.1f, random);
+  for (const float size : {1.0f, 0x1p-20f, 0x1p-24f})
+    for (const bool instanced : {false, true}) {
+      Scene scene;
+      add_mesh(scene, transformed(mesh, glm::scale(Mat4(1), Vec3(size))), instanced ? 0 : none);
+      if (instanced) {
+        scene.groups = 1;
+        const Mat4 grown = glm::scale(Mat4(1), Vec3(1 / size));
+        scene.instances = {Instance{0, grown, glm::inverse(grown)}};
+      }
+      const Accel accel(scene);
+      const float seen = instanced ? 1 : size;
+      int hits = 0;
+      for (int i = 0; i < 2000; ++i) {
+        const uint32_t prim = uint32_t(random.uniform(0, double(mesh.triangles.size())));
+        const glm::uvec3 t = mesh.triangles[prim];
+        const Vec2 bary(random.uniform(0.1, 0.4), random.uniform(0.1, 0.4));
+        const Vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
+        const Vec3 target = a + bary.x * (b - a) + bary.y * (c - a), o = 3.0f * random.direction();
+        Hit hit;
+        ASSERT_TRUE(accel.intersect(seen * o, glm::normalize(target - o), 0, infinity, hit)) << size;
+        if (hit.prim != prim) continue;  // another one is before it
+        ++hits;
+        ASSERT_NEAR(hit.bary.x, bary.x, 0.01f) << size << ' ' << instanced;
+        ASSERT_NEAR(hit.bary.y, bary.y, 0.01f) << size << ' ' << instanced;
+        ASSERT_NEAR(hit.t / seen, glm::length(target - o), 1e-4f) << size << ' ' << instanced;
+      }
+      EXPECT_GT(hits, 300);
+    }
+}
+
 TEST(Accel, NothingToHit) {
   Hit hit;
   Scene empty;

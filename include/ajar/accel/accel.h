@@ -29,6 +29,9 @@ class Accel {
   std::unique_ptr<Data> data_;
   void* top_ = nullptr;  // the top-level scene, one indirection closer for the hot path
   uint32_t first_instance_ = 0;
+  // Rays are that many times as long to the ray tracer, which takes hits of triangles for their first corner where
+  // twice the area, times the cosine, times the ray's length is below 1e-18. A power of two: distances stay exact.
+  float stretch_ = 0x1p30f;
 };
 
 }  // namespace ajar
