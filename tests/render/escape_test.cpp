@@ -1,6 +1,8 @@
 // Where subpaths leave the scene, fields learn what is there: infinite lights, or nothing.
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "ajar/scene/build.h"
 #include "ajar/scene/light.h"
 #include "measure.h"
@@ -66,6 +68,23 @@ TEST(Escapes, GoStraightThroughPanes) {
   const Sums q = upwards(fields, fields.q);
   ASSERT_GT(q.total, 0);
   EXPECT_LT(q.near / q.visits, 0.6 / double(radius));  // the pane mirrors, too, and the ball is near
+}
+
+// Whatever other strategies would bring of a lamp that was hit, what next-event estimation leaves of it is learned: a
+// closed box that shines knows its irradiance.
+TEST(Escapes, LampsAreLearnedOnce) {
+  Material wall;
+  wall.reflectance.value = Rgb(0.5f);
+  const Scene scene = furnace(Oven::box, wall, Rgb(1), 40);
+  const Accel accel(scene);
+  for (const char* integrator : {"guided-path", "guided-bdpt"}) {
+    RenderOptions o = statistical(integrator);
+    o.spp = 128;
+    const Fields fields = rendered(scene, accel, o).learning.fields;
+    double sum = 0, visits = 0;
+    for (const FieldCell& c : fields.q.cells) sum += double(c.visits * c.total), visits += double(c.visits);
+    EXPECT_NEAR(sum / visits / (2 * std::numbers::pi), 1, 0.15) << integrator;
+  }
 }
 
 }  // namespace
