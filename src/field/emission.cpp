@@ -126,11 +126,11 @@ bool guide_direction(const Fields* fields, Vec2 u, EmissionSample& out) {
   return out.pdf_direction > 0;
 }
 
-// Next-event rays of camera subpaths at the vertex, per area of the disk across the scene and solid angle. 0: unknown.
-double camera_rays(const Fields& fields, const Guide& guide, const Vec3& wi, double pdf) {
-  const float cosine = std::abs(glm::dot(guide.ng, wi));
-  if (guide.cell == none || !(cosine > 1e-4f)) return 0;
-  return double(fields.q.cells[guide.cell].visits) * pdf / double(cosine);
+// Rays of camera subpaths to the light, per area of the disk across the scene and solid angle. 0: none, or unknown.
+double camera_rays(const Fields& fields, const WayBack& way, const Vec3& wi) {
+  if (!way.guide || way.guide->cell == none) return 0;
+  const float cosine = std::abs(glm::dot(way.guide->ng, wi));
+  return cosine > 1e-4f ? double(fields.q.cells[way.guide->cell].visits) * way.pdf / double(cosine) : 0;
 }
 
 // What a ray from the disk brings per watt. Rays of both sides teach, weighed by what both make of them, relative to
@@ -179,7 +179,7 @@ EmissionPdf pdf_emission(const Scene& scene, const Fields* fields, const LightPo
 }
 
 void record_start(const Scene& scene, const Fields& fields, Training& training, const EmissionSample& start,
-                  float brings, float per_watt, const Guide* straight) {
+                  float brings, float per_watt, const WayBack& way) {
   const LightCut* cut = cut_of(&fields);
   if (cut && start.point.place != none) {
     const LightTree& tree = scene.light_tree;
@@ -191,22 +191,17 @@ void record_start(const Scene& scene, const Fields& fields, Training& training, 
   if (!start.point.infinite) return;
   const uint32_t region = start_at(scene, &fields, start.point, start.direction).region;
   if (region >= fields.disk.cells.size()) return;
-  double of_camera = 0;
-  if (straight && straight->cell != none)
-    of_camera = camera_rays(fields, *straight, start.direction,
-                            pdf_next_event(scene, *straight, start.point, -start.direction)) /
-                double(start.pdf_direction);
   record_place(scene, fields, training, region, square_of(scene, start.point.p, start.direction), per_watt,
-               start.pdf_position, of_camera, 1);
+               start.pdf_position, camera_rays(fields, way, start.direction) / double(start.pdf_direction), 1);
 }
 
-void record_start(const Scene& scene, const Fields& fields, Training& training, const Guide& guide,
-                  const LightPoint& point, const Vec3& wi, double pdf, int count) {
+void record_start(const Scene& scene, const Fields& fields, Training& training, const LightPoint& point, const Vec3& wi,
+                  const WayBack& way, float through, int count) {
   const Start start = start_at(scene, &fields, point, -wi);
-  const double of_camera = start.density > 0 ? camera_rays(fields, guide, wi, pdf) / start.density : 0;
+  const double of_camera = start.density > 0 ? camera_rays(fields, way, wi) / start.density : 0;
   if (!(of_camera > 0) || start.region >= fields.disk.cells.size()) return;
-  const Vec2 square = square_of(scene, guide.p, -wi);
-  const float per_watt = scatters(guide) * fields.w.cells[guide.cell].total;
+  const Vec2 square = square_of(scene, way.guide->p, -wi);
+  const float per_watt = through * scatters(*way.guide) * fields.w.cells[way.guide->cell].total;
   record_place(scene, fields, training, start.region, square, per_watt,
                double(disk_pdf(scene, &fields, start.region, square)), of_camera, 1 / float(count));
 }

@@ -17,9 +17,6 @@ struct Passed {
   float distance = 0;  // to the place that it comes from, where it goes straight on; 0: it is turned
 };
 
-// Panes: their two refractions shift light, and hardly turn it.
-constexpr float straight_on = 0.999f;
-
 // Only reflects or refracts sharply: the fields know nothing of it.
 bool passes(const Guide& guide) { return guide.bsdf.has_delta && !guide.bsdf.has_smooth; }
 
@@ -51,7 +48,7 @@ void record_segment(const Fields& fields, Training& training, const Vertex& a, c
   if (from.cell == none || !(from.cosine > 1e-4f) || !(to.cosine > 1e-4f)) return;
   if (to.cell == none && !passes(b.guide) && !(to.q > 0)) return;
   const double pdf = b.own * b.distance2 / to.cosine;
-  const double back = (1 - b.guide.mix_other) * to.cosine * inv_pi + b.guide.mix_other * b.guide.back;
+  const double back = back_density(b);
   if (from.own + from.other <= 0) from.own = 1;
   const double density = from.own * pdf / from.cosine + to.other * back / to.cosine;
   const float at_a = weight_at(from, density);
@@ -137,6 +134,11 @@ float brought_by(const Subpath& subpath, int i, Side side, float next) {
 }
 
 }  // namespace
+
+double back_density(const Vertex& v) {
+  const Guide& g = v.guide;
+  return (1 - g.mix_other) * std::abs(glm::dot(v.ng, g.wo)) * inv_pi + g.mix_other * g.back;
+}
 
 void record_subpath(const Fields& fields, Training& training, Sightings& sightings, const Subpath& subpath, Side side) {
   Tallies& own_tallies = training.of(side);

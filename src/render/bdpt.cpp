@@ -24,8 +24,8 @@ void teach_light(const Work& work, const Vertex& v, LightChances& chances, const
   const Job& job = work.job;
   record_next_event(*job.scene, v.guide, chances, *job.training, c.point, lit ? max_component(c.arrives) : 0);
   if (lit && job.guided && c.point.infinite)
-    record_start(*job.scene, *job.walk.fields, *job.training, v.guide, c.point, c.light_found.w,
-                 c.light.own * c.shares.light_first, count);
+    record_start(*job.scene, *job.walk.fields, *job.training, c.point, c.light_found.w,
+                 {&v.guide, c.light.own * c.shares.light_first}, 1, count);
   charge(work.scratch, work.scratch.ledger->learn_ticks);
 }
 
@@ -205,6 +205,24 @@ void join_all(Work& work) {
     }
 }
 
+// A light subpath would have come the same way, straight through panes, to the last vertex that scatters: next-event
+// estimation does not go through them.
+void teach_escape(const Work& work, const Walk& walk, uint32_t light) {
+  const Job& job = work.job;
+  const Subpath& camera = work.scratch.camera;
+  int i = camera.n - 1;
+  while (i > 1 && camera[i].delta && !connectable(camera[i].guide)) --i;
+  if (i < 1 || i + 1 >= camera.n || !connectable(camera[i].guide)) return;
+  const Vertex &from = camera[i], &pane = camera[i + 1];
+  const Vec3 d = -pane.guide.wo;
+  if (from.delta || !(glm::dot(d, walk.d) > straight_on)) return;
+  const double pdf = pane.own * pane.distance2 / std::abs(glm::dot(pane.ng, d));
+  LightPoint point = light_point(*job.scene, light, walk.d);
+  point.p = from.p;
+  record_start(*job.scene, *job.walk.fields, *job.training, point, walk.d, {&from.guide, pdf},
+               luminance(walk.beta) / luminance(pane.beta), 1);
+}
+
 // s = 0: the camera subpath left the scene.
 void join_escapes(Work& work, const Walk& walk) {
   Subpath& camera = work.scratch.camera;
@@ -213,7 +231,9 @@ void join_escapes(Work& work, const Walk& walk) {
   for (const uint32_t light : work.job.scene->infinite_lights)
     if (join_escape(*work.job.scene, work.job.walk.fields, light, camera, walk, c)) {
       add(work, c, 0, camera.n + 1);
-      if (work.sample.teaches) found += luminance(c.arrives) * share_of_hit(work, c);
+      if (!work.sample.teaches) continue;
+      found += luminance(c.arrives) * share_of_hit(work, c);
+      if (work.job.guided) teach_escape(work, walk, light);
     }
   if (work.sample.teaches) camera.escape = escape_of(camera, walk, found);
   charge_join(work.scratch, 0, camera.n + 1);

@@ -5,19 +5,28 @@
 namespace ajar {
 namespace {
 
+// How camera subpaths would have come from the light subpath's last vertex, the first that scatters, to where it
+// started: by next-event estimation, or straight through panes.
+WayBack way_back(const Work& work, const Subpath& light, const Walk& walk) {
+  const Guide& guide = light[light.n - 1].guide;
+  const Vec3& d = walk.start.direction;
+  if (light.n == 2) return {&guide, pdf_next_event(*work.job.scene, guide, walk.start.point, -d)};
+  return glm::dot(guide.wo, -d) > straight_on ? WayBack{&guide, back_density(light[light.n - 1])} : WayBack{};
+}
+
 // What the light subpath brought to the first surface that scatters it, if it came to one: glass before it only passes
 // light on.
 void teach_start(const Work& work, const Subpath& light, const Walk& walk, bool arrived) {
   if (!work.sample.teaches || !work.job.guided) return;
   float brings = 0, per_watt = 0;
-  const Guide* straight = nullptr;
+  WayBack way;
   if (arrived) {
     const Vertex& first = light[light.n - 1];
-    if (light.n == 2) straight = &first.guide;
+    if (walk.start.point.infinite) way = way_back(work, light, walk);
     const float started = luminance(light[1].beta);
     brings = promise(first.guide, first.beta).all, per_watt = started > 0 ? brings / started : 0;
   }
-  record_start(*work.job.scene, *work.job.walk.fields, *work.job.training, walk.start, brings, per_watt, straight);
+  record_start(*work.job.scene, *work.job.walk.fields, *work.job.training, walk.start, brings, per_watt, way);
   charge(work.scratch, work.scratch.ledger->learn_ticks);
 }
 

@@ -24,7 +24,10 @@ void teach_by_light(const Scene& scene, const Accel& accel, const Fields& fields
     if (!start_light(scene, options, sampler, path, walk)) continue;
     const bool hit = step(scene, accel, options, path, walk, surface);
     const float per_watt = hit ? promise(path[1].guide, Rgb(1)).all : 0;
-    record_start(scene, fields, out, walk.start, 0, per_watt, hit && told ? &path[1].guide : nullptr);
+    WayBack way;
+    if (hit && told)
+      way = {&path[1].guide, pdf_next_event(scene, path[1].guide, walk.start.point, -walk.start.direction)};
+    record_start(scene, fields, out, walk.start, 0, per_watt, way);
   }
 }
 
@@ -45,7 +48,8 @@ void teach_by_camera(const Scene& scene, const Accel& accel, const Fields& field
         Candidate c;
         if (draw_light(scene, v.guide, s, u) && join_light(scene, &fields, path, t, chances, u, 1, c) &&
             visible(accel, c.segment))
-          record_start(scene, fields, out, v.guide, c.point, c.light_found.w, c.light.own * c.shares.light_first, rays);
+          record_start(scene, fields, out, c.point, c.light_found.w, {&v.guide, c.light.own * c.shares.light_first}, 1,
+                       rays);
       }
     }
   }

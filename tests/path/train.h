@@ -25,7 +25,8 @@ inline void trace_subpath(const Scene& scene, const Accel& accel, const WalkOpti
     if (out.n == 2 && side == Side::light && training) {
       const Vertex& first = out[1];
       record_start(scene, *options.fields, *training, walk.start, promise(first.guide, first.beta).all,
-                   promise(first.guide, Rgb(1)).all, &first.guide);
+                   promise(first.guide, Rgb(1)).all,
+                   {&first.guide, pdf_next_event(scene, first.guide, walk.start.point, -walk.start.direction)});
     }
     const Vertex& v = out[out.n - 1];
     if (side == Side::camera && training && connectable(v.guide)) {
@@ -36,8 +37,8 @@ inline void trace_subpath(const Scene& scene, const Accel& accel, const WalkOpti
                        join_light(scene, options.fields, out, out.n, chances, u, 1, c) && visible(accel, c.segment);
       record_next_event(scene, v.guide, chances, *training, c.point, lit ? max_component(c.arrives) : 0);
       if (lit && c.point.infinite)
-        record_start(scene, *options.fields, *training, v.guide, c.point, c.light_found.w,
-                     c.light.own * c.shares.light_first, 1);
+        record_start(scene, *options.fields, *training, c.point, c.light_found.w,
+                     {&v.guide, c.light.own * c.shares.light_first}, 1, 1);
       c = {};
     }
     if (side == Side::camera && scene.shapes[surface.shape].light != none &&

@@ -1,6 +1,7 @@
 // Fields learn of what glass alone connects: joins cannot pass it, so that the paths themselves have to tell.
 #include <gtest/gtest.h>
 
+#include "ajar/field/emission.h"
 #include "kit/stage.h"
 #include "measure.h"
 
@@ -45,6 +46,52 @@ TEST(BehindGlass, TheSkyShines) {
   const Fields fields = learned(scene);
   EXPECT_GT(total(fields.q), 0);
   EXPECT_TRUE(std::any_of(fields.disk.mean.begin(), fields.disk.mean.end(), [](float m) { return m > 0; }));
+}
+
+// A dark yard under the sky with a box in it, in whose lid there is a hole that one start in some ten thousand comes
+// through.
+Scene under_a_lid(bool glazed) {
+  Scene scene;
+  scene.filter = make_filter(FilterKind::box);
+  set_camera(scene, {0, 0.8f, 1.9f}, {0, 0.5f, 0}, 60, 64, 64);
+  const uint32_t white = add_diffuse(scene, Rgb(0.7f));
+  add_quad(scene, {-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, white);
+  for (const float x : {-2.0f, 2.0f}) add_quad(scene, {x, 0, -2}, {0, 0, 4}, {0, 2, 0}, white);
+  for (const float z : {-2.0f, 2.0f}) add_quad(scene, {-2, 0, z}, {4, 0, 0}, {0, 2, 0}, white);
+  add_quad(scene, {-2, 2, -2}, {4, 0, 0}, {0, 0, 1.6f}, white);
+  add_quad(scene, {-2, 2, 0.4f}, {4, 0, 0}, {0, 0, 1.6f}, white);
+  add_quad(scene, {-2, 2, -0.4f}, {1.6f, 0, 0}, {0, 0, 0.8f}, white);
+  add_quad(scene, {0.4f, 2, -0.4f}, {1.6f, 0, 0}, {0, 0, 0.8f}, white);
+  add_quad(scene, {-30, -0.1f, 30}, {60, 0, 0}, {0, 0, -60}, add_diffuse(scene, Rgb(0)));
+  if (glazed) add_quad(scene, {-0.4f, 2, 0.4f}, {0.8f, 0, 0}, {0, 0, -0.8f}, add_pane_material(scene));
+  add_light(scene, LightKind::constant, Rgb(1));
+  finish(scene);
+  return scene;
+}
+
+// Share of light subpaths that start where they come through the hole, or would but for the pane in it.
+double share_through_the_hole(const Scene& scene, const Fields& fields) {
+  constexpr int starts = 20'000;
+  int through = 0;
+  for (int i = 0; i < starts; ++i) {
+    Sampler sampler = make_sampler(SamplerKind::independent, 5, Side::light, uint64_t(i), 0);
+    const float choice = sampler.next1();
+    const Vec2 position = sampler.next2(), direction = sampler.next2();
+    EmissionSample start;
+    if (!sample_emission(scene, &fields, choice, position, direction, start) || start.direction.y >= 0) continue;
+    const Vec3 at = start.point.p + start.direction * ((2 - start.point.p.y) / start.direction.y);
+    through += std::abs(at.x) < 0.4f && std::abs(at.z) < 0.4f;
+  }
+  return double(through) / starts;
+}
+
+// Camera subpaths come to the sky through a hole that light subpaths hardly find, and tell them: by next-event
+// estimation, or straight through a pane.
+TEST(BehindGlass, CameraSubpathsTeachWhereTheSkyComesIn) {
+  for (const bool glazed : {false, true}) {
+    const Scene scene = under_a_lid(glazed);
+    EXPECT_GT(share_through_the_hole(scene, learned(scene)), 0.05) << glazed;
+  }
 }
 
 // The stage with its lamp hung where no other surface shares its cell.

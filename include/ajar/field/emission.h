@@ -16,13 +16,19 @@ bool sample_emission(const Scene& scene, const Fields* fields, float u_choice, c
                      const Vec2& u_direction, EmissionSample& out);
 /// The same densities; for infinite lights point.p is any point of the ray.
 EmissionPdf pdf_emission(const Scene& scene, const Fields* fields, const LightPoint& point, const Vec3& direction);
-/// What a light subpath that started here is expected to bring (Promise of its first vertex, of all that was emitted
-/// and of one watt; 0 where it hit nothing). straight: that vertex, where nothing lies between; null else.
+/// How a camera subpath would have sent a ray the other way: from a vertex, with a density per solid angle, in which
+/// the choice of the light is. Without a vertex: not at all.
+struct WayBack {
+  const Guide* guide = nullptr;
+  double pdf = 0;
+};
+/// What a light subpath that started here is expected to bring (Promise of its first vertex that scatters, of all that
+/// was emitted and of one watt; 0 where it came to none).
 void record_start(const Scene& scene, const Fields& fields, Training& training, const EmissionSample& start,
-                  float brings, float per_watt, const Guide* straight);
-/// A free ray of next-event estimation to an infinite light, one of count that a camera vertex sent: how a light
-/// subpath would have come there, so what it would have taught. pdf: of wi, the choice of the light included.
-void record_start(const Scene& scene, const Fields& fields, Training& training, const Guide& guide,
-                  const LightPoint& point, const Vec3& wi, double pdf, int count);
+                  float brings, float per_watt, const WayBack& way);
+/// A free ray of a camera subpath to an infinite light, in direction wi: how a light subpath would have come to its
+/// vertex, so what it would have taught. through: what glass on the way passes of it; count: rays that the vertex sent.
+void record_start(const Scene& scene, const Fields& fields, Training& training, const LightPoint& point, const Vec3& wi,
+                  const WayBack& way, float through, int count);
 
 }  // namespace ajar

@@ -11,4 +11,10 @@ namespace ajar {
 /// with Rule::returned one, the field of its side where it was sent from.
 void record_subpath(const Fields& fields, Training& training, Sightings& sightings, const Subpath& subpath, Side side);
 
+/// Cosine of what panes turn light by: their two refractions shift it, and hardly turn it.
+inline constexpr float straight_on = 0.999f;
+/// Density per solid angle with which the other side's subpaths are taken to leave the vertex to the one before it:
+/// as from a matt surface, but for their field (G3).
+double back_density(const Vertex& v);
+
 }  // namespace ajar
