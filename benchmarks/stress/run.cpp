@@ -50,7 +50,7 @@ void render_all(const Case& c, const Scene& scene, RenderOptions o, int batches,
   for (int i = 0; i < batches; ++i) {
     o.seed = uint64_t(i) + 1;
     RenderState state = start_render(scene, o);
-    if (guided && c.fields) go_on_from(stored, learn_options(o), state.learning, state.film);
+    if (guided && c.fields) go_on_from(scene, stored, learn_options(o), state.learning, state.film);
     CellTable& table = state.learning.fields.table;
     if (walls && table.compartments.empty()) kit::copy_walls(*walls, table);
     render(scene, accel, o, state, nullptr);

@@ -167,8 +167,7 @@ RenderState begin(const RenderArguments& a, Scene& scene, const Run& run) {
   }
   if (!a.load_fields.empty() && is_guided(run.options.integrator)) {
     StoredFields stored = load_fields(a.load_fields, scene_key(scene));
-    fit_lights(scene.light_tree, learn_options(run.options), stored.fields);
-    go_on_from(std::move(stored), learn_options(run.options), state.learning, state.film);
+    go_on_from(scene, std::move(stored), learn_options(run.options), state.learning, state.film);
   }
   return state;
 }

@@ -287,6 +287,17 @@ void forget_starts(Fields& fields) {
   add_cut(fields.starts, none);
 }
 
+size_t cuts_of_cells(const Fields& fields, const LearnOptions& options) {
+  return options.lights ? fields.cells.size() : 0;
+}
+bool lights_fit(const Fields& fields, const LightTree& tree, const LearnOptions& options) {
+  return fields.lights.cuts.size() == cuts_of_cells(fields, options) && fits(fields.lights, tree);
+}
+bool starts_fit(const Fields& fields, const LightTree& tree) {
+  return fields.starts.cuts.size() == 1 && fits(fields.starts, tree);
+}
+bool disk_fits(const Fields& fields, const LightTree& tree) { return fields.disk.cells.size() == tree.regions.size(); }
+
 }  // namespace
 
 Fields start_fields(const Scene& scene, double pixels, const LearnOptions& options) {
@@ -357,23 +368,24 @@ void restrict_to(Fields& fields, Guided guided) {
   forget_starts(fields);
 }
 
+bool fits(const Fields& fields, const LightTree& tree, const LearnOptions& options) {
+  return lights_fit(fields, tree, options) && starts_fit(fields, tree) && disk_fits(fields, tree);
+}
+
 bool fit_lights(const LightTree& tree, const LearnOptions& options, Fields& fields) {
-  bool changed = false;
-  if (const size_t cuts = options.lights ? fields.cells.size() : 0;
-      fields.lights.cuts.size() != cuts || !fits(fields.lights, tree)) {
+  if (fits(fields, tree, options)) return false;
+  if (!lights_fit(fields, tree, options)) {
     fields.lights = {};
-    for (size_t i = 0; i < cuts; ++i) add_cut(fields.lights, none);
-    changed = true;
+    for (size_t i = 0; i < cuts_of_cells(fields, options); ++i) add_cut(fields.lights, none);
   }
-  if (!fits(fields.starts, tree)) forget_starts(fields), changed = true;
-  if (fields.disk.cells.size() != tree.regions.size()) {
+  if (!starts_fit(fields, tree)) forget_starts(fields);
+  if (!disk_fits(fields, tree)) {
     const double unit = fields.disk.unit;
     fields.disk = {};
     fields.disk.unit = unit;
     for (size_t i = 0; i < tree.regions.size(); ++i) add_cell(fields.disk, none, Structure::adaptive);
-    changed = true;
   }
-  return changed;
+  return true;
 }
 
 }  // namespace ajar

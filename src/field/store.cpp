@@ -12,7 +12,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind fields_kind = {"AJARfd12", "file of fields", "make one with --save-fields",
+constexpr FileKind fields_kind = {"AJARfd13", "file of fields", "make one with --save-fields",
                                   "learn the fields again with --save-fields"};
 
 bool is_amount(float x) { return x >= 0 && x < infinity; }
@@ -176,8 +176,7 @@ void read(Reader& r, size_t cells, uint32_t most, LearnedLights& v) {
 
 void read(Reader& r, const LearnedLights& v, LightTallies& t) {
   r.array(t.square), r.array(t.hits), r.array(t.tried);
-  const size_t n = v.entries.size();
-  r.require(t.square.size() == n && t.hits.size() == n && t.tried.size() == n);
+  r.require(fits(t, v));
 }
 
 bool is_sound(const Frame& f) {
@@ -188,11 +187,7 @@ bool is_sound(const Frame& f) {
 
 void read(Reader& r, const Field& f, Tallies& t) {
   tallies_members(r, t);
-  const size_t strata = 16 * f.nodes.size(), cells = f.cells.size();
-  r.require(t.value.size() == strata && t.weight.size() == strata && t.direct.size() == cells &&
-            t.directs.size() == cells && t.visits.size() == cells && t.held.size() == cells &&
-            t.nearness.size() == cells && t.lines.size() == f.portals.size() / 2 * line_sums &&
-            t.through.size() == cells * sums_through(f));
+  r.require(fits(t, f));
 }
 
 template <class T>
@@ -348,8 +343,8 @@ std::string scene_key(const Scene& scene) {
     sum = checksum(&light.to_world, sizeof light.to_world, sum);
     sum = checksum(&light.position, sizeof light.position, sum);
     sum = checksum(&light.direction, sizeof light.direction, sum);
-    const float cone[] = {light.cutoff, light.beam};
-    sum = checksum(cone, sizeof cone, sum);
+    const float shape[] = {light.sampling_weight, light.cone, light.cutoff, light.beam, light.plane.x, light.plane.y};
+    sum = checksum(shape, sizeof shape, sum);
     watts += one;
   }
   return fmt::format(

@@ -96,6 +96,24 @@ Training start_training(const Fields& fields) {
   return t;
 }
 
+bool fits(const Tallies& t, const Field& f) {
+  const size_t strata = 16 * f.nodes.size(), cells = f.cells.size();
+  return t.value.size() == strata && t.weight.size() == strata && t.direct.size() == cells &&
+         t.directs.size() == cells && t.visits.size() == cells && t.held.size() == cells &&
+         t.nearness.size() == cells && t.lines.size() == f.portals.size() / 2 * line_sums &&
+         t.through.size() == cells * sums_through(f);
+}
+
+bool fits(const LightTallies& t, const LearnedLights& v) {
+  const size_t n = v.entries.size();
+  return t.square.size() == n && t.hits.size() == n && t.tried.size() == n;
+}
+
+bool fits(const Training& t, const Fields& f) {
+  return fits(t.q, f.q) && fits(t.w, f.w) && fits(t.disk, f.disk) && fits(t.lights, f.lights) &&
+         fits(t.starts, f.starts) && t.views.counts.size() == start_tallies(f.views).counts.size();
+}
+
 void record(const Fields& fields, const Field& field, Tallies& tallies, uint32_t cell, const Record& r) {
   add_record(fields, field, tallies, cell, stratum_of(fields, field, cell, r), r);
 }

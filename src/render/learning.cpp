@@ -44,7 +44,8 @@ Learning start_learning(const Scene& scene, const Film& film, const LearnOptions
   return l;
 }
 
-void go_on_from(StoredFields stored, const LearnOptions& options, Learning& l, Film& film) {
+void go_on_from(const Scene& scene, StoredFields stored, const LearnOptions& options, Learning& l, Film& film) {
+  fit_lights(scene.light_tree, options, stored.fields);
   // Importance counts pixels, and this film may have more or fewer of them; and lamps may shine more or less.
   const double scale = l.fields.w.unit / stored.fields.w.unit;
   stored.fields.q.unit = l.fields.q.unit;

@@ -56,10 +56,9 @@ std::optional<Fields> teach(const Scene& scene, const Accel& accel, const Render
   if (before) {
     const LearnOptions learning = learn_options(teaching);
     StoredFields carried{doubt(before->fields, moved, kept_near_motion, learning), {}, 0};
-    fit_lights(scene.light_tree, learning, carried.fields);
     for (Cell& c : carried.fields.cells) c.seen *= sequence.forget;  // or cells divide until the memory is full
     state.learning.train = 0;  // of an image; lessons that time cut short go on from where they are
-    go_on_from(std::move(carried), learning, state.learning, state.film);
+    go_on_from(scene, std::move(carried), learning, state.learning, state.film);
     teaching.learn.forget = sequence.forget, teaching.learn.steady = sequence.coherence.numbers;
     if (!give_lessons(scene, accel, teaching, 1, sequence.teach, state, monitor)) return {};
     return std::move(state.learning.fields);
@@ -73,6 +72,7 @@ std::optional<Fields> teach(const Scene& scene, const Accel& accel, const Render
 
 RenderState start_with(const Scene& scene, const RenderOptions& options, Fields fields) {
   RenderState state = start_render(scene, options);
+  fit_lights(scene.light_tree, learn_options(options), fields);
   state.learning.fields = std::move(fields);
   state.learning.training = start_training(state.learning.fields);
   state.learning.train = state.learning.fields.generation;

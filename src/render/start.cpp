@@ -49,6 +49,14 @@ void check_state(const Scene& scene, const RenderOptions& options, const RenderS
   if (learns(options) && state.learning.fields.starts.cuts.empty())
     throw Error(fmt::format("render: {} learns, and the state has no fields; start_render makes one with these options",
                             options.integrator));
+  if (learns(options) && !fits(state.learning.fields, scene.light_tree, learn_options(options)))
+    throw Error(
+        "render: what the state learned of lights is of another scene, another choice of lights, or other options; "
+        "start_render makes a new state, go_on_from and start_with bring stored fields into it");
+  if (learns(options) && !fits(state.learning.training, state.learning.fields))
+    throw Error(
+        "render: the state's fields were changed by hand, and its training is of others; go_on_from and start_with "
+        "bring fields into a state");
   if (!options.next_event && (integrator.splats || integrator.light_half))
     throw Error(
         fmt::format("render: {} needs next-event estimation; leave next_event true, or take path or guided-path",

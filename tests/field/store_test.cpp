@@ -170,6 +170,16 @@ TEST_F(Store, KeyTellsWhatFieldsDependOn) {
   EXPECT_TRUE(changed([](Scene& s) { s.shapes[0].flip = !s.shapes[0].flip; }));
   EXPECT_TRUE(changed([](Scene& s) { s.lights[0].beam = 0.1f; }));
   EXPECT_TRUE(changed([](Scene& s) { s.lights[0].cutoff = 0.2f; }));
+  EXPECT_TRUE(changed([](Scene& s) { s.lights[0].sampling_weight = 2; }));
+  const auto spot = [](float cutoff, float beam) {
+    Scene other = kit::stage(8);
+    Light& light = other.lights[add_light(other, LightKind::spot, Slot{1.0f})];
+    light.cutoff = cutoff, light.beam = beam;
+    finish(other);
+    return scene_key(other);
+  };
+  EXPECT_NE(spot(0.5f, 0), spot(0.4f, 0));
+  EXPECT_NE(spot(0.5f, 0), spot(0.5f, 0.1f));
   EXPECT_TRUE(changed([](Scene& s) { add_light(s, LightKind::constant, Slot{0.1f}); }));
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "ajar/render/sequence.h"
 #include "ajar/scene/load.h"
 #include "bytes.h"
 #include "kit/files.h"
@@ -227,7 +228,7 @@ TEST(Schedule, StoredFieldsSpareTheYoungPasses) {
   const File file("ajar_fields");
   save_fields(file.path, stored_fields(scene, first.learning, passes_drawn(first.film, first.adaptive)));
   RenderState second = start_render(scene, o);
-  go_on_from(load_fields(file.path, scene_key(scene)), o.learn, second.learning, second.film);
+  go_on_from(scene, load_fields(file.path, scene_key(scene)), o.learn, second.learning, second.film);
   expect_same_field(first.learning.fields.q, second.learning.fields.q);
   expect_same_field(first.learning.fields.w, second.learning.fields.w);
   expect_same_views(first.learning.fields, second.learning.fields);
@@ -243,11 +244,42 @@ TEST(Schedule, StoredFieldsSpareTheYoungPasses) {
   int passes = 0;
   render(scene, accel, o, young, [&](const RenderState&) { return ++passes < 3; });
   RenderState third = start_render(scene, o);
-  go_on_from(stored_fields(scene, young.learning, passes_drawn(young.film, young.adaptive)), o.learn, third.learning,
-             third.film);
+  go_on_from(scene, stored_fields(scene, young.learning, passes_drawn(young.film, young.adaptive)), o.learn,
+             third.learning, third.film);
   render(scene, accel, o, third, always);
   EXPECT_EQ(dropped_passes(third.learning, third.film), blind_generations - 2);  // passes are dropped in pairs
   EXPECT_EQ(third.film.dropped % 2, 0u);
+}
+
+// What fields know of lights is of one tree of lights; a state that has another's is refused.
+TEST(Schedule, StoredFieldsMayBeOfOtherLights) {
+  Scene scene = many_lights(64, 1, 32);
+  RenderOptions o = options_of("guided-bdpt", 40);
+  const StoredFields stored = stored_fields(scene, rendered(scene, Accel(scene), o).learning, 80);
+  RenderOptions whole = o;
+  whole.learn.lights = false;
+  const StoredFields without = stored_fields(scene, rendered(scene, Accel(scene), whole).learning, 80);
+  ASSERT_GT(stored.fields.lights.entries.size(), stored.fields.lights.cuts.size());
+  ASSERT_TRUE(without.fields.lights.cuts.empty() && !without.fields.cells.empty());
+  for (size_t i = 0; i < 60; ++i) scene.lights[i].sampling_weight = 0;
+  finish(scene);
+  o.spp = 4;
+  const Accel accel(scene);
+  for (const StoredFields* fields : {&stored, &without}) {
+    RenderState loaded = start_render(scene, o);
+    go_on_from(scene, *fields, learn_options(o), loaded.learning, loaded.film);
+    EXPECT_TRUE(fits(loaded.learning.fields, scene.light_tree, learn_options(o)));
+    EXPECT_NO_THROW(render(scene, accel, o, loaded, always));
+    RenderState frozen = start_with(scene, o, fields->fields);
+    EXPECT_NO_THROW(render(scene, accel, o, frozen, always));
+
+    RenderState put = start_render(scene, o);
+    put.learning.fields = fields->fields;
+    const auto said = [&] { return kit::error_of([&] { render(scene, accel, o, put, always); }); };
+    EXPECT_NE(said().find("of another scene, another choice of lights"), std::string::npos) << said();
+    ASSERT_TRUE(fit_lights(scene.light_tree, learn_options(o), put.learning.fields));
+    EXPECT_NE(said().find("its training is of others"), std::string::npos) << said();
+  }
 }
 
 TEST(Schedule, FieldsGuideTheSideThatIsAskedFor) {
@@ -265,8 +297,8 @@ TEST(Schedule, FieldsGuideTheSideThatIsAskedFor) {
     EXPECT_EQ(guides(one.learning.fields.q), side == Guided::camera);
     EXPECT_EQ(guides(one.learning.fields.w), side == Guided::light);
     RenderState loaded = start_render(scene, o);
-    go_on_from(stored_fields(scene, both.learning, passes_drawn(both.film, both.adaptive)), o.learn, loaded.learning,
-               loaded.film);
+    go_on_from(scene, stored_fields(scene, both.learning, passes_drawn(both.film, both.adaptive)), o.learn,
+               loaded.learning, loaded.film);
     EXPECT_EQ(guides(loaded.learning.fields.q), side == Guided::camera);
     EXPECT_EQ(guides(loaded.learning.fields.w), side == Guided::light);
   }

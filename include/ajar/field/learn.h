@@ -45,6 +45,8 @@ Fields doubt(const Fields& fields, const std::vector<Box>& moved, float kept, co
 /// Makes stored fields those of this tree and of these options: what was learned of the lights of another tree (that of
 /// another LightChoice) is forgotten. False where nothing had to change.
 bool fit_lights(const LightTree& tree, const LearnOptions& options, Fields& fields);
+/// Whether they are so: fit_lights would change nothing.
+bool fits(const Fields& fields, const LightTree& tree, const LearnOptions& options);
 /// Takes the field away from the side that is not to be guided: its mix is 0.
 void restrict_to(Fields& fields, Guided guided);
 

@@ -44,6 +44,11 @@ struct Training {
 /// Sums of zero for these fields, as large as their cells, strata and portals are now: they are to be started anew when
 /// any of these change.
 Training start_training(const Fields& fields);
+/// Whether it has the sums that these fields ask for, and no others.
+bool fits(const Training& training, const Fields& fields);
+/// The same of one field's.
+bool fits(const Tallies& tallies, const Field& field);
+bool fits(const LightTallies& tallies, const LearnedLights& lights);
 
 /// A segment as its cell gets to know it.
 struct Record {

@@ -27,9 +27,11 @@ struct Learning {
 inline constexpr uint32_t young_generations = 8, blind_generations = 4, rare_records = 8;
 
 Learning start_learning(const Scene& scene, const Film& film, const LearnOptions& options);
-/// Puts stored fields in place of those that know nothing. Passes are numbered on from those that the fields were
-/// learned from: a pass guided by what its own numbers taught would be biased. Call before the first pass.
-void go_on_from(StoredFields stored, const LearnOptions& options, Learning& learning, Film& film);
+/// Puts stored fields in place of those that know nothing. They may be of the scene as it was before it changed: what
+/// they know of other lights, or with other options, is forgotten. Passes are numbered on from those that the fields
+/// were learned from: a pass guided by what its own numbers taught would be biased. Call before the first pass.
+/// options: learn_options of the render's.
+void go_on_from(const Scene& scene, StoredFields stored, const LearnOptions& options, Learning& learning, Film& film);
 /// The fields as they are now, with the numbers that they have seen: those of so many passes (passes_drawn).
 StoredFields stored_fields(const Scene& scene, const Learning& learning, uint32_t passes);
 /// Passes that were traced and dropped.

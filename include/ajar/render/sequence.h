@@ -50,7 +50,8 @@ uint64_t teaching_seed(const SequenceOptions& sequence, uint64_t seed, uint32_t 
 std::optional<Fields> teach(const Scene& scene, const Accel& accel, const RenderOptions& options,
                             const SequenceOptions& sequence, const Carried* before, const std::vector<Box>& moved,
                             uint32_t frame, const Monitor& monitor);
-/// A render of a guided integrator with these fields, which stay as they are: nothing is recorded.
+/// A render of a guided integrator with these fields, which stay as they are: nothing is recorded. What they know of
+/// other lights than the scene's is forgotten.
 RenderState start_with(const Scene& scene, const RenderOptions& options, Fields fields);
 
 /// Files of what is carried; the key names the animation. Throws Error.
