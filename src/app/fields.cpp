@@ -59,7 +59,7 @@ void show_fields(const FieldsArguments& a) {
   if (!a.scene.empty() && a.out.empty()) throw Error("--scene is for pictures: add -o FOLDER");
   if (!a.out.empty()) check_folder(a.out);
   if (a.scene.empty()) {
-    say(stdout, "{}", describe(load_fields(a.file)));
+    say(stdout, "{}", describe(load_fields(a.file, {})));
     return;
   }
   Scene scene = load_scene(a.scene, load_options(a.defines, a.lenient, a.at));

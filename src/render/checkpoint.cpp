@@ -181,12 +181,13 @@ std::string read_checkpoint_key(const std::string& path) {
 void load_checkpoint(const std::string& path, const std::string& key, RenderState& state) {
   Reader r(path, checkpoint_kind);
   check_made_for(r, key, state.integrator);
-  const bool learns = !state.learning.fields.table.slots.empty();
-  read_image(r, state);
-  read_steering(r, state);
-  read(r, state.learning);
+  RenderState stored = state;
+  read_image(r, stored);
+  read_steering(r, stored);
+  read(r, stored.learning);
   r.finish();
-  if (!learns) state.learning = {};
+  if (state.learning.fields.table.slots.empty()) stored.learning = {};  // nothing is learned
+  state = std::move(stored);
 }
 
 }  // namespace ajar

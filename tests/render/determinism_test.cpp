@@ -198,12 +198,29 @@ TEST(Determinism, DamagedOrForeignCheckpointsAreErrors) {
   save_checkpoint(file.path + ".layers", "key", short_layer);
   RenderState layers = start_render(scene, with_layers);
   EXPECT_THROW(load_checkpoint(file.path + ".layers", "key", layers), Error);
+  EXPECT_EQ(layers.film.passes, 0u) << "nothing of what was read before the error";
+  EXPECT_NO_THROW(render(scene, accel, with_layers, layers, always));
   std::filesystem::remove(file.path + ".layers");
   for (const double part : {0.0, 0.001, 0.3, 0.9, 0.99999}) {
     std::filesystem::resize_file(file.path, uint64_t(double(size) * part));
     RenderState fresh = start_render(scene, o);
     EXPECT_THROW(load_checkpoint(file.path, "key", fresh), Error) << part;
   }
+}
+
+TEST(Determinism, ACheckpointOfOtherLightsIsNotGoneOnWith) {
+  const Scene lamps = many_lights(64, 1, 32);
+  Scene room = cornell(32);
+  room.camera = lamps.camera;
+  finish(room);
+  RenderOptions o = options_of("guided-bdpt", 40);
+  const File file("ajar_other_lights");
+  save_checkpoint(file.path, "key", rendered(lamps, Accel(lamps), o));
+  RenderState state = start_render(room, o);
+  load_checkpoint(file.path, "key", state);
+  o.spp = 60;
+  const std::string said = kit::error_of([&] { render(room, Accel(room), o, state, always); });
+  EXPECT_NE(said.find("lights is of another scene"), std::string::npos) << said;
 }
 
 TEST(Determinism, UnknownIntegratorIsAnError) {

@@ -21,8 +21,9 @@ std::string scene_key(const Scene& scene);
 
 /// Written aside and renamed. Throws Error.
 void save_fields(const std::string& path, const StoredFields& stored);
-/// Throws Error where the file is damaged, of another version, or (key not empty) of another scene.
-StoredFields load_fields(const std::string& path, const std::string& key = {});
+/// key: scene_key of the scene that they are for. Throws Error where the file is damaged, of another version, or of
+/// another scene; an empty key takes fields of any scene, to look at.
+StoredFields load_fields(const std::string& path, const std::string& key);
 
 // Parts of files: what another file, too, may hold.
 void write(Writer& w, const Fields& fields);

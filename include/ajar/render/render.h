@@ -62,7 +62,9 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
 /// Saves the state with a key that names scene and options; written aside and renamed. Throws Error.
 void save_checkpoint(const std::string& path, const std::string& key, const RenderState& state);
 /// Fills a state that start_render made for the same scene and options. Throws Error when the file is damaged, of
-/// another version, key or integrator, or lacks the images of strategies that the state keeps.
+/// another version, key or integrator, or lacks the images of strategies that the state keeps; the state is as it was
+/// then. Whether it is of the same scene the key has to say (scene_key in field/store.h is a part of one): render
+/// refuses a state whose film or lights are of another, and takes all else for the scene's.
 void load_checkpoint(const std::string& path, const std::string& key, RenderState& state);
 /// The key that a checkpoint was saved with. Throws Error where the file is none, or of another version.
 std::string read_checkpoint_key(const std::string& path);
