@@ -115,6 +115,8 @@ struct Accel::Data {
   std::vector<EmbreeScene> groups;
   std::vector<Quadric> quadrics;
   std::vector<CutOut> cut_outs;
+  std::vector<uint64_t> sizes;
+  size_t instances = 0;
   std::atomic<int64_t> bytes{0};
 };
 
@@ -122,6 +124,14 @@ namespace {
 
 // Of a scene whose rays are longer, products of its coordinates with them would overflow.
 constexpr float largest_stretched = 1e8f;
+// Triangles of every shape; of quadrics a number that no mesh has.
+std::vector<uint64_t> sizes_of(const Scene& scene) {
+  std::vector<uint64_t> sizes;
+  sizes.reserve(scene.shapes.size());
+  for (const Shape& s : scene.shapes)
+    sizes.push_back(s.kind == ShapeKind::mesh ? scene.meshes[s.mesh].triangles.size() : ~uint64_t(s.kind));
+  return sizes;
+}
 
 [[noreturn]] void refuse(RTCDevice device, const char* what) {
   throw Error(fmt::format("ray tracer: {} (error {}); is there enough memory?", what, int(rtcGetDeviceError(device))));
@@ -185,7 +195,9 @@ bool count_bytes(void* data, ssize_t bytes, bool) {
 }  // namespace
 
 Accel::Accel(const Scene& scene) : data_(std::make_unique<Data>()), first_instance_(uint32_t(scene.shapes.size())) {
+  require_finished(scene);
   Data& data = *data_;
+  data.sizes = sizes_of(scene), data.instances = scene.instances.size();
   data.device.reset(rtcNewDevice(nullptr));
   if (!data.device) refuse(nullptr, "cannot start");
   RTCDevice device = data.device.get();
@@ -219,6 +231,10 @@ Accel::Accel(const Scene& scene) : data_(std::make_unique<Data>()), first_instan
 Accel::~Accel() = default;
 Accel::Accel(Accel&&) noexcept = default;
 Accel& Accel::operator=(Accel&&) noexcept = default;
+
+bool Accel::fits(const Scene& scene) const {
+  return data_ && data_->instances == scene.instances.size() && data_->sizes == sizes_of(scene);
+}
 
 size_t Accel::bytes() const { return size_t(std::max<int64_t>(data_->bytes.load(), 0)); }
 

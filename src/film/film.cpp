@@ -1,7 +1,10 @@
 #include "ajar/film/film.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "ajar/core/error.h"
 #include "ajar/core/parallel.h"
 #include "ajar/core/sampler.h"
 #include "ajar/film/fireflies.h"
@@ -32,6 +35,12 @@ glm::ivec2 tile_shift(const Film& film) {
 }
 
 Film make_film(const Camera& camera, const Filter& filter, bool splats) {
+  if (camera.crop_width < 1 || camera.crop_height < 1)
+    throw Error(fmt::format("film: {}x{} pixels are none; give the camera a crop of one or more each way",
+                            camera.crop_width, camera.crop_height));
+  if (const bool exact = filter.kind == FilterKind::box || filter.kind == FilterKind::tent;
+      !(filter.radius > 0 && filter.radius < infinity) || (!exact && filter.table.empty()))
+    throw Error("film: the filter has no radius or no table; make it by make_filter");
   Film film;
   film.x0 = camera.crop_x, film.y0 = camera.crop_y;
   film.width = camera.crop_width, film.height = camera.crop_height;

@@ -4,6 +4,7 @@
 
 #include <bit>
 
+#include "ajar/core/error.h"
 #include "ajar/core/parallel.h"
 #include "ajar/field/portals.h"
 #include "ajar/field/walls.h"
@@ -133,6 +134,9 @@ void trace_next(const Job& job, const RenderOptions& options, Workshop& shop, Re
 void render(const Scene& scene, const Accel& accel, const RenderOptions& options, RenderState& state,
             const Monitor& monitor) {
   check_state(scene, options, state);
+  if (!accel.fits(scene))
+    throw Error(
+        "render: the accelerator is of another scene, or of this one before it changed; make one of this scene");
   if (!may_leave_out(options)) state.plain.with_merging = {};
   Stopwatch watch;
   const auto read_clock = [&] { watch.add_to(state.stats.seconds, state.stats.cpu_seconds); };

@@ -1,17 +1,23 @@
 #include "ajar/scene/build.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "ajar/core/error.h"
 #include "bounds.h"
 #include "load/mesh.h"
 
 namespace ajar {
 namespace {
 
+// Adds to a list of the scene, which is to be finished anew then.
 template <class T>
-uint32_t append(std::vector<T>& to, T value) {
-  to.push_back(std::move(value));
-  return uint32_t(to.size() - 1);
+uint32_t append(Scene& scene, std::vector<T> Scene::*list, T value) {
+  scene.finished = false;
+  (scene.*list).push_back(std::move(value));
+  return uint32_t((scene.*list).size() - 1);
 }
 
 Slot slot_of(uint32_t texture) {
@@ -58,7 +64,7 @@ bool add_camera(Scene& scene) {
   return true;
 }
 
-uint32_t add_material(Scene& scene, const Material& material) { return append(scene.materials, material); }
+uint32_t add_material(Scene& scene, const Material& material) { return append(scene, &Scene::materials, material); }
 
 uint32_t add_diffuse(Scene& scene, const Rgb& reflectance) {
   Material m;
@@ -109,24 +115,29 @@ Slot add_checkerboard(Scene& scene, const Rgb& a, const Rgb& b) {
   t.kind = TextureKind::checkerboard;
   t.to_uv[0][0] = t.to_uv[1][1] = 4;
   t.color0 = a, t.color1 = b;
-  return slot_of(append(scene.textures, t));
+  return slot_of(append(scene, &Scene::textures, t));
 }
 
 Slot add_image(Scene& scene, int width, int height, std::vector<float> rgb) {
+  if (width < 1 || height < 1 || rgb.size() != 3 * size_t(width) * size_t(height))
+    throw Error(fmt::format("add_image: {} numbers are no image of {}x{} pixels; give it 3 for each", rgb.size(), width,
+                            height));
+  if (!std::all_of(rgb.begin(), rgb.end(), [](float x) { return std::isfinite(x); }))
+    throw Error("add_image: some of its numbers are not finite; leave them out");
   Image image;
   image.width = width, image.height = height, image.channels = 3;
   image.floats = std::move(rgb);
   image.name = "image " + std::to_string(scene.images.size());
   Texture t;
-  t.image = append(scene.images, std::move(image));
-  return slot_of(append(scene.textures, t));
+  t.image = append(scene, &Scene::images, std::move(image));
+  return slot_of(append(scene, &Scene::textures, t));
 }
 
 uint32_t add_mesh(Scene& scene, Mesh mesh, uint32_t material) {
   Shape shape;
-  shape.mesh = append(scene.meshes, std::move(mesh));
+  shape.mesh = append(scene, &Scene::meshes, std::move(mesh));
   shape.material = material;
-  return append(scene.shapes, shape);
+  return append(scene, &Scene::shapes, shape);
 }
 
 uint32_t add_quad(Scene& scene, const Vec3& corner, const Vec3& u, const Vec3& v, uint32_t material) {
@@ -154,7 +165,7 @@ uint32_t add_quadric(Scene& scene, ShapeKind kind, const Mat4& to_world, uint32_
   shape.material = material;
   shape.to_world = to_world;
   shape.to_object = glm::inverse(to_world);
-  return append(scene.shapes, shape);
+  return append(scene, &Scene::shapes, shape);
 }
 
 uint32_t add_sphere(Scene& scene, const Vec3& center, float radius, uint32_t material) {
@@ -168,10 +179,12 @@ uint32_t add_globe(Scene& scene, const Vec3& center, float radius, uint32_t mate
 }
 
 uint32_t add_area_light(Scene& scene, uint32_t shape, const Slot& radiance) {
+  if (shape >= scene.shapes.size())
+    throw Error(fmt::format("add_area_light: there is no shape {}; the scene has {}", shape, scene.shapes.size()));
   Light light;
   light.radiance = radiance;
   light.shape = shape;
-  return scene.shapes[shape].light = append(scene.lights, light);
+  return scene.shapes[shape].light = append(scene, &Scene::lights, light);
 }
 
 uint32_t add_light(Scene& scene, LightKind kind, const Slot& radiance) {
@@ -181,13 +194,15 @@ uint32_t add_light(Scene& scene, LightKind kind, const Slot& radiance) {
   light.direction = {0, -1, 0};
   light.to_world = kind == LightKind::spot || kind == LightKind::projector ? look_at({0, 0, 0}, {0, -1, 0}) : Mat4(1);
   light.cutoff = 40 * pi / 180, light.beam = 30 * pi / 180;
-  return append(scene.lights, light);
+  return append(scene, &Scene::lights, light);
 }
 
 uint32_t add_envmap(Scene& scene, const Slot& image, float scale) {
+  if (image.texture >= scene.textures.size() || scene.textures[image.texture].image >= scene.images.size())
+    throw Error("add_envmap: the slot has no image; take one that add_image made");
   const uint32_t id = add_light(scene, LightKind::envmap, image);
   scene.lights[id].environment =
-      append(scene.environments, make_environment(scene, scene.textures[image.texture].image, scale));
+      append(scene, &Scene::environments, make_environment(scene, scene.textures[image.texture].image, scale));
   return id;
 }
 

@@ -4,6 +4,7 @@
 #include "ajar/core/parallel.h"
 #include "ajar/scene/cutout.h"
 #include "bounds.h"
+#include "check.h"
 #include "solid.h"
 
 namespace ajar {
@@ -112,6 +113,8 @@ void prepare_light(Scene& scene, uint32_t id) {
 }  // namespace
 
 void finish(Scene& scene) {
+  scene.finished = false;
+  check_parts(scene);
   set_bounds(scene);
   for (Mesh& mesh : scene.meshes) set_packed(mesh);
   prepare_materials(scene);
@@ -122,6 +125,16 @@ void finish(Scene& scene) {
   scene.infinite_lights.clear();
   for (uint32_t i = 0; i < scene.lights.size(); ++i) prepare_light(scene, i);
   set_light_choice(scene, LightChoice::tree);
+  scene.finished = true;
+}
+
+void require_finished(const Scene& scene) {
+  const auto is_packed = [](const Mesh& m) {
+    return m.packed.size() == m.positions.size() && m.faces.size() == m.triangles.size();
+  };
+  if (!scene.finished || scene.light_tree.tiling.size() != scene.lights.size() ||
+      !std::all_of(scene.meshes.begin(), scene.meshes.end(), is_packed))
+    throw Error("scene: it was built or changed, and not finished; call finish(scene) first");
 }
 
 void set_light_choice(Scene& scene, LightChoice choice) { scene.light_tree = make_light_tree(scene, choice); }

@@ -45,6 +45,13 @@ void add_quadric(Scene& scene, ShapeKind kind, const Mat4& to_world, uint32_t gr
   scene.shapes.push_back(shape);
 }
 
+// With a material for its shapes.
+Scene& finished(Scene& scene) {
+  scene.materials.resize(1);
+  finish(scene);
+  return scene;
+}
+
 Mesh random_triangles(Random& random, int n, float size) {
   Mesh mesh;
   for (int i = 0; i < n; ++i) {
@@ -115,7 +122,7 @@ TEST(Accel, FindsTheNearestTriangle) {
   Random random{std::mt19937_64(1)};
   Scene scene;
   add_mesh(scene, random_triangles(random, 300, 0.3f));
-  const Accel accel(scene);
+  const Accel accel(finished(scene));
   int hits = 0;
   for (int i = 0; i < 5000; ++i) {
     const Vec3 o = 2.0f * random.box(), d = random.direction() * float(random.uniform(0.1, 3));
@@ -174,7 +181,7 @@ void quadric_against_marching(ShapeKind kind) {
     if (kind == ShapeKind::sphere) m = glm::scale(glm::translate(Mat4(1), random.box()), Vec3(random.uniform(0.3, 1)));
     Scene scene;
     add_quadric(scene, kind, m);
-    const Accel accel(scene);
+    const Accel accel(finished(scene));
     for (int i = 0; i < 100; ++i, ++rays) {
       const Vec3 o = 2.5f * random.box(), d = random.direction();
       const glm::dmat4 inverse(glm::inverse(glm::dmat4(m)));
@@ -205,7 +212,7 @@ TEST(Accel, FlatDiskIsHitEverywhere) {
   Random random{std::mt19937_64(5)};
   Scene scene;
   add_quadric(scene, ShapeKind::disk, Mat4(1));
-  const Accel accel(scene);
+  const Accel accel(finished(scene));
   for (int i = 0; i < 10000; ++i) {
     const float r = float(random.uniform(0, 0.999)), phi = float(random.uniform(0, 6.28));
     const Vec3 target(r * std::cos(phi), r * std::sin(phi), 0);
@@ -221,7 +228,7 @@ TEST(Accel, FlatDiskIsHitEverywhere) {
 TEST(Accel, CornersOfTheInterval) {
   Scene scene;
   add_quadric(scene, ShapeKind::sphere, Mat4(1));
-  const Accel accel(scene);
+  const Accel accel(finished(scene));
   const Vec3 o(0, 0, -3), d(0, 0, 1);
   Hit hit;
   ASSERT_TRUE(accel.intersect(o, d, 0, infinity, hit));
@@ -253,7 +260,7 @@ TEST(Accel, InstancesAreTheTransformedGroup) {
     for (uint32_t k : {0u, 1u}) flat.push_back(transformed(scene.meshes[k], instance.to_world));
     scene.instances.push_back(instance);
   }
-  const Accel accel(scene);
+  const Accel accel(finished(scene));
   int hits = 0;
   for (int i = 0; i < 3000; ++i) {
     const Vec3 o = 3.0f * random.box(), d = random.direction();
@@ -289,7 +296,7 @@ TEST(Accel, InstancedQuadric) {
   instance.to_world = glm::scale(glm::translate(Mat4(1), Vec3(5, 0, 0)), Vec3(-1, 2, 0.5f));
   instance.to_object = glm::inverse(instance.to_world);
   scene.instances = {Instance{0, instance.to_world, instance.to_object}};
-  const Accel accel(scene);
+  const Accel accel(finished(scene));
   Hit hit;
   ASSERT_TRUE(accel.intersect(Vec3(5, 10, 0), Vec3(0, -1, 0), 0, infinity, hit));
   EXPECT_NEAR(hit.t, 8, 1e-5);
@@ -308,7 +315,7 @@ TEST(Accel, ClosedMeshesDoNotLeak) {
     Mesh& mesh = scene.meshes[0];
     const Vec3 shift = 3.0f * size * random.box();
     for (Vec3& p : mesh.positions) p = p * size + shift;
-    const Accel accel(scene);
+    const Accel accel(finished(scene));
     int escaped = 0;
     constexpr int rays = 40000;
     for (int i = 0; i < rays; ++i) {
@@ -363,21 +370,21 @@ TEST(Accel, SmallTrianglesAreHitWithin) {
 TEST(Accel, NothingToHit) {
   Hit hit;
   Scene empty;
-  EXPECT_FALSE(Accel(empty).intersect(Vec3(0), Vec3(0, 0, 1), 0, infinity, hit));
-  EXPECT_FALSE(Accel(empty).occluded(Vec3(0), Vec3(0, 0, 1), infinity));
+  EXPECT_FALSE(Accel(finished(empty)).intersect(Vec3(0), Vec3(0, 0, 1), 0, infinity, hit));
+  EXPECT_FALSE(Accel(finished(empty)).occluded(Vec3(0), Vec3(0, 0, 1), infinity));
 
   Scene hollow;  // a mesh without triangles, a group without shapes and an instance of it
   hollow.groups = 1;
   add_mesh(hollow, Mesh{});
   hollow.instances.push_back({});
-  EXPECT_FALSE(Accel(hollow).intersect(Vec3(0), Vec3(0, 0, 1), 0, infinity, hit));
+  EXPECT_FALSE(Accel(finished(hollow)).intersect(Vec3(0), Vec3(0, 0, 1), 0, infinity, hit));
 
   Scene thin;  // triangles without area
   Mesh mesh;
   mesh.positions = {{0, 0, 1}, {1, 0, 1}, {2, 0, 1}, {0, 0, 1}};
   mesh.triangles = {{0, 1, 2}, {0, 0, 0}, {0, 3, 1}};
   add_mesh(thin, mesh);
-  const Accel accel(thin);
+  const Accel accel(finished(thin));
   for (int i = -100; i <= 100; ++i)
     ASSERT_TRUE(!accel.intersect(Vec3(0.3f, 0.013f * float(i), 0), Vec3(0, 0, 1), 0, infinity, hit) || hit.t == 1);
 }
@@ -387,11 +394,11 @@ TEST(Accel, MovesAndCountsItsBytes) {
   Scene scene;
   add_mesh(scene, ball(3, 0, random));
   add_quadric(scene, ShapeKind::sphere, glm::scale(Mat4(1), Vec3(0.5f)));
-  Accel first(scene);
+  Accel first(finished(scene));
   EXPECT_GT(first.bytes(), 512u * 12u);
   Accel second(std::move(first));
   Scene empty;
-  Accel third(empty);
+  Accel third(finished(empty));
   third = std::move(second);
   Hit hit;
   ASSERT_TRUE(third.intersect(Vec3(0, 0, -3), Vec3(0, 0.001f, 1), 0, infinity, hit));

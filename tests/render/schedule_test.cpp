@@ -251,6 +251,31 @@ TEST(Schedule, StoredFieldsSpareTheYoungPasses) {
   EXPECT_EQ(third.film.dropped % 2, 0u);
 }
 
+// What is not finished, or has no film, is not rendered, nor through another scene's accelerator.
+TEST(Schedule, ScenesAreFinishedAndHaveTheirAccelerator) {
+  const RenderOptions o = options_of("path", 1);
+  Scene scene = stage(16);
+  const auto begin = [&](const Scene& of) { return kit::error_of([&] { start_render(of, o); }); };
+  const auto has = [](const std::string& text, const char* words) { EXPECT_NE(text.find(words), text.npos) << text; };
+  has(begin(scene), "call finish");
+  has(kit::error_of([&] { Accel{scene}; }), "call finish");
+  finish(scene);
+  EXPECT_EQ(begin(scene), "");
+  for (const int width : {0, -4}) {
+    Scene none_seen = scene;
+    none_seen.camera.crop_width = width;
+    has(begin(none_seen), "pixels are none");
+  }
+  Scene blurred = scene;
+  blurred.filter = {};
+  blurred.filter.kind = FilterKind::gaussian;
+  has(begin(blurred), "make_filter");
+  RenderState state = start_render(scene, o);
+  const Scene other = glass_ball(1.5f, 16), copy = scene;
+  has(kit::error_of([&] { render(scene, Accel(other), o, state, {}); }), "accelerator is of another scene");
+  EXPECT_EQ(kit::error_of([&] { render(scene, Accel(copy), o, state, {}); }), "") << "nothing moved";
+}
+
 // What fields know of lights is of one tree of lights; a state that has another's is refused.
 TEST(Schedule, StoredFieldsMayBeOfOtherLights) {
   Scene scene = many_lights(64, 1, 32);

@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <functional>
 #include <set>
+
+#include "ajar/core/error.h"
+#include "kit/files.h"
 
 namespace ajar {
 namespace {
@@ -27,6 +32,93 @@ void expect_finished(const Scene& scene, const std::string& name) {
 std::pair<Vec3, Vec3> face(const Mesh& mesh, const glm::uvec3& t) {
   const Vec3 p = mesh.positions[t.x];
   return {glm::cross(mesh.positions[t.y] - p, mesh.positions[t.z] - p), p};
+}
+
+// What a change of the box says: of the furnace, which has a mesh, a material and an area light.
+std::string refusal(const std::function<void(Scene&)>& change) {
+  Scene scene = furnace(Oven::box, Material{});
+  change(scene);
+  return kit::error_of([&] { finish(scene); });
+}
+
+TEST(Build, what_does_not_fit_is_an_error) {
+  const auto expect = [](const char* words, const std::function<void(Scene&)>& change) {
+    const std::string said = refusal(change);
+    EXPECT_NE(said.find(words), std::string::npos) << words << ": " << said;
+  };
+  EXPECT_EQ(refusal([](Scene&) {}), "");
+  const float nan = std::nanf("");
+  expect("shape 0: its material is 5, and the scene has 1", [](Scene& s) { s.shapes[0].material = 5; });
+  expect("shape 0: its mesh is 3, and the scene has 1", [](Scene& s) { s.shapes[0].mesh = 3; });
+  expect("shape 0: its group is 0, and the scene has 0", [](Scene& s) { s.shapes[0].group = 0; });
+  expect("instance 0: its group is 0", [](Scene& s) { s.instances.emplace_back(); });
+  expect("shape 0: its light is 7", [](Scene& s) { s.shapes[0].light = 7; });
+  expect("shape 0: its light 0 is not an area light", [](Scene& s) { s.lights[0].kind = LightKind::point; });
+  expect("light 0: its shape 0 has another light", [](Scene& s) { s.shapes[0].light = none; });
+  expect("light 0: has no shape", [](Scene& s) { s.lights[0].shape = none, s.shapes[0].light = none; });
+  expect("light 0: its radiance is negative", [](Scene& s) { s.lights[0].radiance = Slot(-1.0f); });
+  expect("light 0: its sampling_weight is -1", [](Scene& s) { s.lights[0].sampling_weight = -1; });
+  expect("light 1: has no environment", [](Scene& s) { add_light(s, LightKind::envmap, Slot(1.0f)); });
+  expect("material 0: its reflectance is 9, and the scene has 0 textures",
+         [](Scene& s) { s.materials[0].reflectance.texture = 9; });
+  expect("material 0: its reflectance is not finite", [&](Scene& s) { s.materials[0].reflectance = Slot(nan); });
+  expect("material 0: its specular is negative", [](Scene& s) { s.materials[0].specular = Slot(-0.5f); });
+  expect("material 0: its roughness is not finite", [](Scene& s) { s.materials[0].roughness = Slot(infinity); });
+  expect("material 0: its eta, k, ior or map_scale", [&](Scene& s) { s.materials[0].ior = nan; });
+  expect("material 0: one of its weights is -1", [](Scene& s) { s.materials[0].weights[1] = -1; });
+  expect("material 0: its nested material is 4", [](Scene& s) { s.materials[0].nested[0] = 4; });
+  expect("mesh 0: its triangle 2 has a corner", [](Scene& s) { s.meshes[0].triangles[2].y = 1000; });
+  expect("mesh 0: has 1 normals and", [](Scene& s) { s.meshes[0].normals = {{0, 0, 1}}; });
+  expect("mesh 0: has 1 uvs and", [](Scene& s) { s.meshes[0].uvs = {{0, 0}}; });
+  expect("mesh 0: has 2 colors and", [](Scene& s) { s.meshes[0].colors.resize(2); });
+  expect("attribute \"wet\"", [](Scene& s) { s.meshes[0].attributes.push_back({"wet", true, {Rgb(1)}}); });
+  expect("texture 0: has no image", [](Scene& s) { s.textures.emplace_back(); });
+  expect("texture 0: is nested more than", [](Scene& s) {
+    s.textures.resize(2);
+    s.textures[0].kind = s.textures[1].kind = TextureKind::scale;
+    s.textures[0].color1.texture = 1, s.textures[1].color0.texture = 0;
+  });
+  expect("image 0: has 11 numbers", [](Scene& s) {
+    add_image(s, 2, 2, std::vector<float>(12));
+    s.images[0].floats.pop_back();
+  });
+  expect("image 0: is of 0x2 pixels", [](Scene& s) {
+    add_image(s, 2, 2, std::vector<float>(12));
+    s.images[0].width = 0;
+  });
+  expect("image 0: its alpha has 3", [](Scene& s) {
+    add_image(s, 2, 2, std::vector<float>(12));
+    s.images[0].alpha.resize(3);
+  });
+}
+
+TEST(Build, parts_that_cannot_be_are_errors) {
+  Scene scene;
+  EXPECT_THROW(add_image(scene, 64, 64, {1, 1, 1}), Error);
+  EXPECT_THROW(add_image(scene, 1, 1, {1, std::nanf(""), 1}), Error);
+  EXPECT_THROW(add_envmap(scene, Slot(1.0f)), Error);
+  EXPECT_THROW(add_envmap(scene, add_checkerboard(scene, Rgb(0), Rgb(1))), Error);
+  EXPECT_THROW(add_area_light(scene, 0, Slot(1.0f)), Error);
+}
+
+TEST(Build, what_was_added_to_is_not_finished) {
+  Scene scene;
+  EXPECT_THROW(require_finished(scene), Error);
+  finish(scene);
+  EXPECT_NO_THROW(require_finished(scene));
+  scene = cornell(16);
+  EXPECT_NO_THROW(require_finished(scene));
+  add_sphere(scene, Vec3(0), 0.1f, 0);
+  EXPECT_THROW(require_finished(scene), Error);
+  finish(scene);
+  scene.lights.emplace_back();
+  EXPECT_THROW(require_finished(scene), Error);
+  scene = cornell(16);
+  scene.meshes[0].triangles.pop_back();
+  EXPECT_THROW(require_finished(scene), Error);
+  scene.meshes[0].triangles.push_back({0, 1, 1000});
+  EXPECT_THROW(finish(scene), Error);
+  EXPECT_THROW(require_finished(scene), Error) << "what cannot be finished is not";
 }
 
 TEST(Build, every_feature_scene_is_finished) {

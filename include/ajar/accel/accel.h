@@ -12,7 +12,8 @@ namespace ajar {
 /// materials unchanged. Safe to query from many threads. What a shape's masks let pass is not there (cutout.h).
 class Accel {
  public:
-  explicit Accel(const Scene& scene);  ///< throws Error when the ray tracer refuses (memory)
+  /// Throws Error where the scene is not finished, and when the ray tracer refuses (memory).
+  explicit Accel(const Scene& scene);
   ~Accel();
   Accel(Accel&&) noexcept;
   Accel& operator=(Accel&&) noexcept;
@@ -21,6 +22,8 @@ class Accel {
   bool intersect(const Vec3& o, const Vec3& d, float t_min, float t_max, Hit& hit) const;
   /// Whether anything lies on o + t d, t in (0, t_max).
   bool occluded(const Vec3& o, const Vec3& d, float t_max) const;
+  /// Whether it may be of this scene: of as many shapes, of as many triangles each, and as many instances.
+  bool fits(const Scene& scene) const;
   /// Bytes held by the structure.
   size_t bytes() const;
 

@@ -48,14 +48,15 @@ struct RenderState {
 /// Seen between batches of chunks, a few times a second at most for large images; return false to stop. May be empty.
 using Monitor = std::function<bool(const RenderState&)>;
 
-/// Throws Error for an unknown integrator.
+/// Throws Error for an unknown integrator, a scene that is not finished, a film without pixels, and a filter that
+/// make_filter did not make.
 RenderState start_render(const Scene& scene, const RenderOptions& options);
 /// Traces until spp, budget or noise target is reached or the monitor says stop; without it, never less than one whole
 /// pass of those that count. The target is looked at after 8, 10, 12, 14, 16, 18, 20 ... 32, 36 ... passes; where it is
 /// the only limit, an image that is black after 1024 passes, or after 8 without lights, ends too. Deterministic for spp
 /// and noise: the same bytes with any number of threads, and when stopped and called again with the same state. Throws
-/// Error for a state of another size or integrator than scene and options ask for, and where next_event is false and
-/// light subpaths are traced.
+/// Error for an accelerator of another scene, for a state of another size or integrator than scene and options ask for
+/// or with fields of other lights, and where next_event is false and light subpaths are traced.
 void render(const Scene& scene, const Accel& accel, const RenderOptions& options, RenderState& state,
             const Monitor& monitor);
 

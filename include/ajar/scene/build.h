@@ -22,7 +22,8 @@ uint32_t add_diffuse(Scene& scene, const Rgb& reflectance);
 uint32_t add_example(Scene& scene, MaterialKind kind, float alpha = 0.2f);
 /// 8 x 8 checkerboard over the unit square of uv.
 Slot add_checkerboard(Scene& scene, const Rgb& a, const Rgb& b);
-/// Linear image, 3 floats a pixel, row 0 on top, behind a texture.
+/// Linear image, 3 floats a pixel, row 0 on top, behind a texture. Throws Error where there are not so many, or not all
+/// are finite.
 Slot add_image(Scene& scene, int width, int height, std::vector<float> rgb);
 
 /// A mesh as it stands, in world space.
@@ -39,12 +40,12 @@ uint32_t add_sphere(Scene& scene, const Vec3& center, float radius, uint32_t mat
 uint32_t add_globe(Scene& scene, const Vec3& center, float radius, uint32_t material, int rings = 24);
 uint32_t add_quadric(Scene& scene, ShapeKind kind, const Mat4& to_world, uint32_t material);
 
-/// Makes a shape an area light [W/(m^2 sr)]; returns the light.
+/// Makes a shape an area light [W/(m^2 sr)]; returns the light. Throws Error where there is no such shape.
 uint32_t add_area_light(Scene& scene, uint32_t shape, const Slot& radiance);
 /// A light without a shape, at the origin or along -y. constant: radiance; directional: irradiance; point, spot:
 /// intensity (the spot with a cutoff of 40 and a beam of 30 degrees).
 uint32_t add_light(Scene& scene, LightKind kind, const Slot& radiance);
-/// An envmap from an image slot made by add_image.
+/// An envmap from an image slot made by add_image; throws Error for another.
 uint32_t add_envmap(Scene& scene, const Slot& image, float scale = 1);
 
 /// Camera space (x left, y up, z forward) at eye, looking at target.

@@ -110,12 +110,18 @@ struct Scene {
   std::vector<uint32_t> infinite_lights;  ///< constant, envmap and sun: those an escaping ray finds
   Vec3 center{0};                         ///< bounding sphere of everything that can be hit
   float radius = 1;
+  bool finished = false;  ///< the parts of build.h clear it
 };
 
 /// Computes what is derived (areas, bounds, light choice); call once after building or changing a scene. Throws Error
-/// where something reaches farther than 1e18 units, where an environment's transform cannot be inverted, and for bsdfs
-/// that cannot be (one that is part of itself).
+/// where parts do not fit (an index that leads nowhere, lists of a mesh or image of other lengths than they say, an
+/// area light and a shape that do not name each other), where a colour of a material or light, or a light's
+/// sampling_weight, is not finite or negative, where something reaches farther than 1e18 units, where the transform of
+/// an environment, spot or projector cannot be inverted, and for bsdfs that cannot be (one that is part of itself).
 void finish(Scene& scene);
+/// Throws Error unless finish was called since the scene was built or added to. Changes that leave all numbers of parts
+/// as they are go unnoticed.
+void require_finished(const Scene& scene);
 /// Has next-event estimation choose another way; of a finished scene. learned is tree, for fields to do better.
 void set_light_choice(Scene& scene, LightChoice choice);
 /// Triangles of all meshes, each once however often it is placed.

@@ -1,0 +1,192 @@
+#include "check.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "ajar/core/error.h"
+#include "bounds.h"
+
+namespace ajar {
+namespace {
+
+// A part of the scene, for messages: "material 3".
+struct Named {
+  const char* kind;
+  size_t index;
+};
+
+[[noreturn]] void refuse(const Named& part, const std::string& what) {
+  throw Error(fmt::format("scene: {} {}: {}", part.kind, part.index, what));
+}
+
+template <class T>
+void check_index(const Named& part, const char* name, uint32_t index, const std::vector<T>& list, const char* lists) {
+  if (index < list.size()) return;
+  refuse(part, index == none ? fmt::format("has no {}; give it one of the scene's {}", name, lists)
+                             : fmt::format("its {} is {}, and the scene has {} {}", name, index, list.size(), lists));
+}
+
+void check_slot(const Scene& scene, const Named& part, const char* name, const Slot& slot, bool is_light) {
+  if (slot.texture != none) return check_index(part, name, slot.texture, scene.textures, "textures");
+  if (!is_finite(slot.value)) refuse(part, fmt::format("its {} is not finite; give it numbers", name));
+  if (is_light && std::min({slot.value.x, slot.value.y, slot.value.z}) < 0)
+    refuse(part, fmt::format("its {} is negative; give it 0 or more", name));
+}
+
+void check_image(const Named& part, const Image& image) {
+  const size_t pixels = size_t(std::max(image.width, 0)) * size_t(std::max(image.height, 0));
+  if (pixels == 0 || (image.channels != 1 && image.channels != 3))
+    refuse(part, fmt::format("is of {}x{} pixels of {} channels; it needs one pixel or more, of 1 or 3 channels",
+                             image.width, image.height, image.channels));
+  const size_t numbers = image.bytes.empty() ? image.floats.size() : image.bytes.size();
+  if (numbers != pixels * size_t(image.channels))
+    refuse(part, fmt::format("has {} numbers; {}x{} pixels of {} channels are {}", numbers, image.width, image.height,
+                             image.channels, pixels * size_t(image.channels)));
+  if (!image.alpha.empty() && image.alpha.size() != pixels)
+    refuse(part, fmt::format("its alpha has {} numbers, and there are {} pixels", image.alpha.size(), pixels));
+}
+
+constexpr int most_textures_deep = 256;
+
+// Textures in each other on the longest way down from one, itself included. found: of those that are known, else 0.
+int texture_depth(const Scene& scene, uint32_t id, int above, std::vector<int>& found) {
+  if (found[id] > 0) return found[id];
+  int below = 0;
+  if (above < most_textures_deep)
+    for (const Slot* slot : {&scene.textures[id].color0, &scene.textures[id].color1})
+      if (slot->texture != none) below = std::max(below, texture_depth(scene, slot->texture, above + 1, found));
+  if (above >= most_textures_deep || below >= most_textures_deep)
+    refuse({"texture", id}, fmt::format("is nested more than {} deep, or inside itself", most_textures_deep));
+  return found[id] = below + 1;
+}
+
+void check_textures(const Scene& scene) {
+  for (size_t i = 0; i < scene.textures.size(); ++i) {
+    const Texture& t = scene.textures[i];
+    const Named part{"texture", i};
+    if (t.kind == TextureKind::bitmap) {
+      check_index(part, "image", t.image, scene.images, "images");
+      check_image({"image", t.image}, scene.images[t.image]);
+    }
+    check_slot(scene, part, "color0", t.color0, false), check_slot(scene, part, "color1", t.color1, false);
+  }
+  std::vector<int> found(scene.textures.size());
+  for (uint32_t i = 0; i < scene.textures.size(); ++i) texture_depth(scene, i, 0, found);
+}
+
+constexpr std::pair<const char*, Slot Material::*> reflecting_slots[] = {{"reflectance", &Material::reflectance},
+                                                                         {"specular", &Material::specular},
+                                                                         {"transmittance", &Material::transmittance}};
+constexpr std::pair<const char*, Slot Material::*> other_slots[] = {{"alpha_u", &Material::alpha_u},
+                                                                    {"alpha_v", &Material::alpha_v},
+                                                                    {"exponent", &Material::exponent},
+                                                                    {"weight", &Material::weight},
+                                                                    {"map", &Material::map},
+                                                                    {"roughness", &Material::roughness},
+                                                                    {"anisotropic", &Material::anisotropic},
+                                                                    {"metallic", &Material::metallic},
+                                                                    {"spec_trans", &Material::spec_trans},
+                                                                    {"spec_tint", &Material::spec_tint},
+                                                                    {"sheen", &Material::sheen},
+                                                                    {"sheen_tint", &Material::sheen_tint},
+                                                                    {"clearcoat", &Material::clearcoat},
+                                                                    {"clearcoat_gloss", &Material::clearcoat_gloss},
+                                                                    {"flatness", &Material::flatness}};
+
+void check_materials(const Scene& scene) {
+  for (size_t i = 0; i < scene.materials.size(); ++i) {
+    const Material& m = scene.materials[i];
+    const Named part{"material", i};
+    for (const auto& [name, slot] : reflecting_slots) check_slot(scene, part, name, m.*slot, true);
+    for (const auto& [name, slot] : other_slots) check_slot(scene, part, name, m.*slot, false);
+    for (const uint32_t nested : m.nested)
+      if (nested != none) check_index(part, "nested material", nested, scene.materials, "materials");
+    if (!is_finite(m.eta) || !is_finite(m.k) || !std::isfinite(m.ior + m.map_scale))
+      refuse(part, "its eta, k, ior or map_scale is not finite; give it numbers");
+    for (const float w : m.weights)
+      if (!(w >= 0 && w < infinity)) refuse(part, fmt::format("one of its weights is {}; give it 0 or more", w));
+  }
+}
+
+void check_length(const Named& part, const std::string& name, size_t length, size_t wanted, const char* of) {
+  if (length != 0 && length != wanted)
+    refuse(part, fmt::format("has {} {} and {} {}; give it as many, or none", length, name, wanted, of));
+}
+
+uint32_t largest(const glm::uvec3& t) { return std::max(t.x, std::max(t.y, t.z)); }
+
+uint32_t largest_index(const std::vector<glm::uvec3>& triangles) {
+  return reduce(
+      triangles.size(), 0u,
+      [&](size_t from, size_t to) {
+        uint32_t most = 0;
+        for (size_t i = from; i < to; ++i) most = std::max(most, largest(triangles[i]));
+        return most;
+      },
+      [](uint32_t a, uint32_t b) { return std::max(a, b); });
+}
+
+void check_mesh(const Named& part, const Mesh& mesh) {
+  const size_t vertices = mesh.positions.size();
+  check_length(part, "normals", mesh.normals.size(), vertices, "positions");
+  check_length(part, "uvs", mesh.uvs.size(), vertices, "positions");
+  check_length(part, "colors", mesh.colors.size(), vertices, "positions");
+  for (const Attribute& a : mesh.attributes)
+    check_length(part, fmt::format("values of its attribute \"{}\"", a.name), a.values.size(),
+                 a.of_faces ? mesh.triangles.size() : vertices, a.of_faces ? "triangles" : "positions");
+  if (mesh.triangles.empty() || largest_index(mesh.triangles) < vertices) return;
+  for (size_t i = 0; i < mesh.triangles.size(); ++i)
+    if (const uint32_t index = largest(mesh.triangles[i]); index >= vertices)
+      refuse(part, fmt::format("its triangle {} has a corner {}, and there are {} positions, counted from 0", i, index,
+                               vertices));
+}
+
+void check_shape(const Scene& scene, uint32_t id) {
+  const Shape& s = scene.shapes[id];
+  const Named part{"shape", id};
+  if (s.kind == ShapeKind::mesh) check_index(part, "mesh", s.mesh, scene.meshes, "meshes");
+  check_index(part, "material", s.material, scene.materials, "materials");
+  if (s.mask != none) check_index(part, "mask", s.mask, scene.materials, "materials");
+  if (s.group != none && s.group >= scene.groups)
+    refuse(part, fmt::format("its group is {}, and the scene has {}", s.group, scene.groups));
+  if (s.light == none) return;
+  check_index(part, "light", s.light, scene.lights, "lights");
+  if (const Light& light = scene.lights[s.light]; light.kind != LightKind::area || light.shape != id)
+    refuse(part,
+           fmt::format("its light {} is not an area light of this shape; let add_area_light join the two", s.light));
+}
+
+void check_light(const Scene& scene, uint32_t id) {
+  const Light& light = scene.lights[id];
+  const Named part{"light", id};
+  check_slot(scene, part, "radiance", light.radiance, true);
+  if (!(light.sampling_weight >= 0 && light.sampling_weight < infinity))
+    refuse(part, fmt::format("its sampling_weight is {}; give it 0 or more", light.sampling_weight));
+  if (light.kind == LightKind::area) {
+    check_index(part, "shape", light.shape, scene.shapes, "shapes");
+    if (scene.shapes[light.shape].light != id)
+      refuse(part,
+             fmt::format("its shape {} has another light, or none; let add_area_light join the two", light.shape));
+  }
+  if (light.kind != LightKind::envmap) return;
+  check_index(part, "environment", light.environment, scene.environments, "environments");
+  const uint32_t image = scene.environments[light.environment].image;
+  check_index({"environment", light.environment}, "image", image, scene.images, "images");
+  check_image({"image", image}, scene.images[image]);
+}
+
+}  // namespace
+
+void check_parts(const Scene& scene) {
+  check_textures(scene);
+  check_materials(scene);
+  for (size_t i = 0; i < scene.meshes.size(); ++i) check_mesh({"mesh", i}, scene.meshes[i]);
+  for (uint32_t i = 0; i < scene.shapes.size(); ++i) check_shape(scene, i);
+  for (uint32_t i = 0; i < scene.lights.size(); ++i) check_light(scene, i);
+  for (size_t i = 0; i < scene.instances.size(); ++i)
+    if (const uint32_t group = scene.instances[i].group; group >= scene.groups)
+      refuse({"instance", i}, fmt::format("its group is {}, and the scene has {}", group, scene.groups));
+}
+
+}  // namespace ajar
