@@ -216,6 +216,7 @@ void set_camera(Scene& scene, const Vec3& eye, const Vec3& target, float fov, in
   Camera& c = scene.camera;
   c.width = c.crop_width = width;
   c.height = c.crop_height = height;
+  c.crop_x = c.crop_y = 0;
   set_perspective(c, fov, look_at(eye, target));
 }
 

@@ -124,7 +124,7 @@ void finish(Scene& scene) {
   }
   scene.infinite_lights.clear();
   for (uint32_t i = 0; i < scene.lights.size(); ++i) prepare_light(scene, i);
-  set_light_choice(scene, LightChoice::tree);
+  set_light_choice(scene, scene.light_tree.choice);
   scene.finished = true;
 }
 

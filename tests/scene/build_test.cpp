@@ -92,6 +92,23 @@ TEST(Build, what_does_not_fit_is_an_error) {
   });
 }
 
+TEST(Build, the_camera_is_set_without_a_crop_window) {
+  Scene scene = cornell(16);
+  scene.camera.crop_x = 8, scene.camera.crop_y = 4, scene.camera.crop_width = 8;
+  set_camera(scene, {0, 0, 3}, {0, 0, 0}, 45, 16, 16);
+  EXPECT_EQ(scene.camera.crop_x, 0);
+  EXPECT_EQ(scene.camera.crop_y, 0);
+  EXPECT_EQ(scene.camera.crop_width, 16);
+}
+
+TEST(Build, the_choice_of_lights_outlives_a_change) {
+  Scene scene = many_lights(8, 1, 16);
+  EXPECT_EQ(scene.light_tree.choice, LightChoice::tree);
+  set_light_choice(scene, LightChoice::power);
+  finish(scene);
+  EXPECT_EQ(scene.light_tree.choice, LightChoice::power);
+}
+
 TEST(Build, parts_that_cannot_be_are_errors) {
   Scene scene;
   EXPECT_THROW(add_image(scene, 64, 64, {1, 1, 1}), Error);

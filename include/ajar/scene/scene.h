@@ -122,7 +122,8 @@ void finish(Scene& scene);
 /// Throws Error unless finish was called since the scene was built or added to. Changes that leave all numbers of parts
 /// as they are go unnoticed.
 void require_finished(const Scene& scene);
-/// Has next-event estimation choose another way; of a finished scene. learned is tree, for fields to do better.
+/// Has next-event estimation choose another way, also after the scene is finished anew; of a finished scene. learned is
+/// tree, for fields to do better.
 void set_light_choice(Scene& scene, LightChoice choice);
 /// Triangles of all meshes, each once however often it is placed.
 uint64_t count_triangles(const Scene& scene);
