@@ -18,6 +18,9 @@ using Mat3 = glm::mat3;
 using Mat4 = glm::mat4;
 using Rgb = glm::vec3;  ///< Linear RGB with the sRGB / Rec. 709 primaries; radiometric unit as the name says.
 
+static_assert(sizeof(Vec3) == 12 && alignof(Vec3) == 4 && alignof(Vec4) == 4 && alignof(Mat4) == 4,
+              "Ajar's libraries hold GLM's types without alignment: leave GLM_FORCE_DEFAULT_ALIGNED_GENTYPES out");
+
 inline constexpr float pi = std::numbers::pi_v<float>;
 inline constexpr float inv_pi = std::numbers::inv_pi_v<float>;
 inline constexpr float infinity = std::numeric_limits<float>::infinity();
