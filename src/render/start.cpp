@@ -20,6 +20,7 @@ constexpr double guided_first = 2;
 }  // namespace
 
 RenderState start_render(const Scene& scene, const RenderOptions& options) {
+  check(options);
   require_finished(scene);
   RenderState state;
   const Integrator& integrator = find_integrator(options.integrator);
@@ -35,6 +36,7 @@ RenderState start_render(const Scene& scene, const RenderOptions& options) {
 }
 
 void check_state(const Scene& scene, const RenderOptions& options, const RenderState& state) {
+  check(options);
   require_finished(scene);
   const Integrator& integrator = find_integrator(options.integrator);
   const Camera& c = scene.camera;

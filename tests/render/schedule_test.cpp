@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 
 #include "ajar/render/sequence.h"
 #include "ajar/scene/load.h"
@@ -274,6 +276,40 @@ TEST(Schedule, ScenesAreFinishedAndHaveTheirAccelerator) {
   const Scene other = glass_ball(1.5f, 16), copy = scene;
   has(kit::error_of([&] { render(scene, Accel(other), o, state, {}); }), "accelerator is of another scene");
   EXPECT_EQ(kit::error_of([&] { render(scene, Accel(copy), o, state, {}); }), "") << "nothing moved";
+}
+
+TEST(Schedule, OptionsThatCannotBeMeantAreErrors) {
+  Scene scene = stage(8);
+  finish(scene);
+  EXPECT_NO_THROW(check(RenderOptions{}));
+  const auto expect = [&](const char* name, const std::function<void(RenderOptions&)>& change) {
+    RenderOptions o = options_of("guided-vcm", 1);
+    change(o);
+    const std::string said = kit::error_of([&] { start_render(scene, o); });
+    EXPECT_EQ(said.find(fmt::format("options: {} is ", name)), 0u) << name << ": " << said;
+    RenderState state = start_render(scene, options_of("guided-vcm", 1));
+    EXPECT_EQ(kit::error_of([&] { render(scene, Accel(scene), o, state, {}); }), said);
+  };
+  const float nan = std::nanf("");
+  expect("seconds", [](RenderOptions& o) { o.seconds = -1; });
+  expect("seconds", [&](RenderOptions& o) { o.seconds = double(nan); });
+  expect("cpu_seconds", [](RenderOptions& o) { o.cpu_seconds = -1; });
+  expect("noise", [](RenderOptions& o) { o.noise = -0.1; });
+  expect("threads", [](RenderOptions& o) { o.threads = -1; });
+  for (const int depth : {0, -2}) expect("max_depth", [=](RenderOptions& o) { o.max_depth = depth; });
+  expect("roulette_depth", [](RenderOptions& o) { o.roulette_depth = -3; });
+  for (const float radius : {nan, -1.0f, infinity})
+    expect("merge_radius", [=](RenderOptions& o) { o.merge_radius = radius; });
+  expect("final_gather", [](RenderOptions& o) { o.final_gather = -1; });
+  for (const float mix : {2.0f, 1.0f, -0.1f, nan}) expect("learn.mix", [=](RenderOptions& o) { o.learn.mix = mix; });
+  expect("learn.forget", [](RenderOptions& o) { o.learn.forget = 1.5f; });
+  expect("learn.trust", [](RenderOptions& o) { o.learn.trust = 0; });
+  expect("learn.divide_cell", [](RenderOptions& o) { o.learn.divide_cell = 0; });
+  expect("learn.divide_stratum", [](RenderOptions& o) { o.learn.divide_stratum = 0; });
+  expect("learn.least_contrast", [&](RenderOptions& o) { o.learn.least_contrast = nan; });
+  RenderOptions photon = options_of("photon", 1);
+  photon.merge_radius = 0;
+  EXPECT_NE(kit::error_of([&] { start_render(scene, photon); }), "") << "it finds nothing";
 }
 
 // What fields know of lights is of one tree of lights; a state that has another's is refused.

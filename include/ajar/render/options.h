@@ -15,13 +15,14 @@ inline constexpr uint32_t default_spp = 64;
 struct RenderOptions {
   std::string integrator = "bdpt";  ///< one of integrator_names()
   // Limits, of which the first that is reached ends the render; 0: none. Without any, default_spp.
-  uint32_t spp = 0;                     ///< passes
-  double seconds = 0, cpu_seconds = 0;  ///< after loading, wall and of all threads
-  double noise = 0;                     ///< estimated relMSE
+  uint32_t spp = 0;        ///< passes
+  double seconds = 0;      ///< wall
+  double cpu_seconds = 0;  ///< of the whole process, while it renders: the host's other threads count too
+  double noise = 0;        ///< estimated relMSE
   uint64_t seed = 0;
   int threads = 0;         ///< 0: all
   int max_depth = -1;      ///< edges of a path: 1 sees lights alone; -1: unlimited
-  int roulette_depth = 5;  ///< edges of a subpath that are traced without roulette
+  int roulette_depth = 5;  ///< edges of a subpath that are traced without roulette; 0: all may end by it
   Heuristic heuristic = Heuristic::power;
   SamplerKind sampler = SamplerKind::sobol;
   bool next_event = true;  ///< next-event estimation; only integrators without light subpaths can do without
@@ -34,6 +35,10 @@ struct RenderOptions {
   bool limit_fireflies = false;  ///< of the developed image (film/fireflies.h)
   bool techniques = false;       ///< keep an image of every (s, t) with s + t <= most_vertices
 };
+
+/// Throws Error, with the field's name, for a number that cannot be meant: below 0, NaN, a mix of 1. start_render and
+/// render ask it.
+void check(const RenderOptions& options);
 
 inline bool has_time_limit(const RenderOptions& o) { return o.seconds > 0 || o.cpu_seconds > 0; }
 inline bool is_limited(const RenderOptions& o) { return o.spp > 0 || has_time_limit(o) || o.noise > 0; }

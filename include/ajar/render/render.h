@@ -48,8 +48,8 @@ struct RenderState {
 /// Seen between batches of chunks, a few times a second at most for large images; return false to stop. May be empty.
 using Monitor = std::function<bool(const RenderState&)>;
 
-/// Throws Error for an unknown integrator, a scene that is not finished, a film without pixels, and a filter that
-/// make_filter did not make.
+/// Throws Error for an unknown integrator, options that check refuses, a scene that is not finished, a film without
+/// pixels, and a filter that make_filter did not make.
 RenderState start_render(const Scene& scene, const RenderOptions& options);
 /// Traces until spp, budget or noise target is reached or the monitor says stop; without it, never less than one whole
 /// pass of those that count. The target is looked at after 8, 10, 12, 14, 16, 18, 20 ... 32, 36 ... passes; where it is
