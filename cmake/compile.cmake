@@ -26,12 +26,16 @@ if(AJAR_LTO)
   include(CheckIPOSupported)
   check_ipo_supported()
   set(CMAKE_INTERPROCEDURAL_OPTIMIZATION ON)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # else the installed libraries are for this compiler's own optimiser alone
+    list(TRANSFORM CMAKE_CXX_COMPILE_OPTIONS_IPO REPLACE "-fno-fat-lto-objects" "-ffat-lto-objects")
+  endif()
 endif()
 
-# gold links in a tenth of the time, and there are sixty programs. Of clang's sanitizers it warns by the thousand.
+# gold links in a tenth of the time, and there are sixty programs. Of clang's sanitizers it warns by the thousand. For
+# Ajar's own programs: whoever links its libraries chooses a linker for himself.
 check_linker_flag(CXX -fuse-ld=gold AJAR_GOLD)
 if(AJAR_GOLD AND NOT AJAR_LTO AND NOT AJAR_SANITIZE)
-  target_link_options(ajar_options INTERFACE -fuse-ld=gold)
+  add_link_options(-fuse-ld=gold)
 endif()
 
 # With AJAR_AT_ONCE, headers of others that most files of TARGET read are compiled once. None of Ajar's own: a change of
@@ -64,6 +68,7 @@ function(ajar_room name)
   set_target_properties(ajar_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
   set_property(GLOBAL APPEND PROPERTY AJAR_ROOMS ajar_${name})
   target_include_directories(ajar_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+                             $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
                              $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(ajar_${name} PRIVATE $<BUILD_INTERFACE:ajar_options> fmt::fmt)
   target_compile_features(ajar_${name} PUBLIC cxx_std_20)

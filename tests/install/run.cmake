@@ -1,5 +1,6 @@
-# Installs a build into a scratch folder, builds tests/install against it and renders a scene with both programs.
-# Usage: cmake -DBUILD=<build folder> -DGUEST=<tests/install> -DSCENE=<file> -DSCRATCH=<folder> -DGENERATOR=<name>
+# Configures a project of which Ajar is a part. Installs a build into a scratch folder, builds tests/install against it and
+# renders a scene with both programs.
+# Usage: cmake -DBUILD=<build folder> -DSOURCE=<source tree> -DGUEST=<tests/install> -DSCENE=<file> -DSCRATCH=<folder> -DGENERATOR=<name>
 #              -DCOMPILER=<c++> -DFLAGS=<compiler flags> -P run.cmake
 cmake_minimum_required(VERSION 3.22)
 
@@ -13,6 +14,7 @@ function(run)
 endfunction()
 
 file(REMOVE_RECURSE ${SCRATCH})
+run(${CMAKE_COMMAND} -S ${GUEST}/part -B ${SCRATCH}/part -G ${GENERATOR} -DAJAR=${SOURCE} -DCMAKE_CXX_COMPILER=${COMPILER})
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${SCRATCH}/prefix)
 run(${CMAKE_COMMAND} -S ${GUEST} -B ${SCRATCH}/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${SCRATCH}/prefix
     -DCMAKE_CXX_COMPILER=${COMPILER} "-DCMAKE_CXX_FLAGS=${FLAGS}" "-DCMAKE_EXE_LINKER_FLAGS=${FLAGS}")
