@@ -4,8 +4,11 @@
 #include <ajar/render/render.h>
 #include <ajar/report/metrics.h>
 #include <ajar/scene/load.h>
+#include <ajar/version.h>
 
 #include <cstdio>
+
+static_assert(AJAR_VERSION_MAJOR == 0 && AJAR_VERSION_MINOR >= 1 && AJAR_VERSION_PATCH >= 0);
 
 int main(int argc, char** argv) try {
   if (argc != 3) return 2;

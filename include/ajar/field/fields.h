@@ -12,8 +12,8 @@ namespace ajar {
 
 enum class Side : uint8_t;
 
-/// One field in one cell. Values are means over the cell; radiance for Q; for W importance, in pixels per area where
-/// radiance is power per area (notation.md).
+/// One field in one cell. Values are means over the cell: luminance of radiance for Q; for W importance, in pixels per
+/// area where radiance is power per area (notation.md).
 struct FieldCell {
   uint32_t root = none;  ///< of its strata
   float direct = 0;  ///< irradiance by light that next-event estimation brings (Q), or importance of the lens itself
@@ -35,7 +35,7 @@ inline float mix_of(const FieldCell& cell) { return cell.even ? 0 : cell.mix; }
 struct Field {
   std::vector<FieldCell> cells;
   std::vector<StrataNode> nodes;
-  std::vector<Short> mean;         ///< 16 per node: what the stratum's field is
+  std::vector<Short> mean;         ///< 16 per node: what the stratum's field is, without what is direct
   std::vector<Short> weight;       ///< 16 per node: how much evidence stands behind it, in records of typical weight
   std::vector<FieldCell> portals;  ///< two for each portal, of what goes down and up its axis: strata of its disk
   double unit = 1;                 ///< a typical value, from the scene's power and size
@@ -82,6 +82,8 @@ struct Fields {
 
   const Field& of(Side side) const;
 };
+
+// What cell names below is one of the fields', as find gives it: not none.
 
 /// Where mean and weight of the stratum of a local direction above the cell's horizon are.
 size_t find_stratum(const Fields& fields, const Field& field, uint32_t cell, const Vec3& local);

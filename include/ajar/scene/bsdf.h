@@ -59,12 +59,12 @@ struct BsdfSample {
   bool delta = false;
 };
 
-/// Evaluates the material of the surface for a viewer in world direction wo (unit, away from the surface). Turns and
-/// bends the frame, which is surface.frame or a copy of it, as twosided (by the side of ng that wo is on), bump and
-/// normal maps ask; local directions below are in that frame. A bent normal stays on the side of ng but not always on
-/// the viewer's: there an opaque bsdf is 0, from both sides alike, so that f stays the same function for camera and
-/// light paths. Where branches of a sum bend it differently the frame is the one before them, and each lobe has its
-/// normal.
+/// Evaluates the material of the surface for a viewer in world direction wo (unit, away from the surface). frame is
+/// input and output: a copy of surface.frame goes in, and comes out turned and bent as twosided (by the side of ng that
+/// wo is on), bump and normal maps ask; local directions below are in that frame. A bent normal stays on the side of ng
+/// but not always on the viewer's: there an opaque bsdf is 0, from both sides alike, so that f stays the same function
+/// for camera and light paths. Where branches of a sum bend it differently the frame is the one before them, and each
+/// lobe has its normal.
 void resolve(const Scene& scene, const Surface& surface, const Vec3& wo, Frame& frame, Bsdf& out);
 
 /// f and both densities; zero for directions that only a delta lobe connects. Local directions, unit, away from the

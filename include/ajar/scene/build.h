@@ -42,8 +42,8 @@ uint32_t add_quadric(Scene& scene, ShapeKind kind, const Mat4& to_world, uint32_
 
 /// Makes a shape an area light [W/(m^2 sr)]; returns the light. Throws Error where there is no such shape.
 uint32_t add_area_light(Scene& scene, uint32_t shape, const Slot& radiance);
-/// A light without a shape, at the origin or along -y. constant: radiance; directional: irradiance; point, spot:
-/// intensity (the spot with a cutoff of 40 and a beam of 30 degrees).
+/// A light without a shape, at the origin or along -y. constant: radiance; directional: irradiance; point, spot,
+/// projector: intensity (the spot with a cutoff of 40 and a beam of 30 degrees). For an envmap take add_envmap.
 uint32_t add_light(Scene& scene, LightKind kind, const Slot& radiance);
 /// An envmap from an image slot made by add_image; throws Error for another.
 uint32_t add_envmap(Scene& scene, const Slot& image, float scale = 1);

@@ -65,6 +65,7 @@ void set_perspective(Camera& camera, float fov_x_degrees, const Mat4& to_world);
 /// The same for an orthographic camera: the image is 2 wide in camera space, so to_world's scale gives its size.
 void set_orthographic(Camera& camera, const Mat4& to_world);
 /// Another size in pixels: what the view spans along camera.axis stays, the rest follows, a crop window is dropped.
+/// Throws Error for less than a pixel either way.
 void set_size(Camera& camera, int width, int height);
 
 }  // namespace ajar

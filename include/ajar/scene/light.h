@@ -55,7 +55,7 @@ struct Light {
 struct LightPoint {
   Vec3 p{0};
   float error = 0;
-  Vec3 n{0};   ///< area: unit normal of the emitting side; infinite: direction of travel; point, spot: zero
+  Vec3 n{0};   ///< area: unit normal of the emitting side; infinite: direction of travel; point, spot, projector: zero
   Vec2 uv{0};  ///< area: of the shape; sample_direct gives it for textured lights alone
   uint32_t light = none;
   uint32_t prim = 0;
@@ -70,7 +70,7 @@ struct DirectSample {
   LightPoint point;
   Vec3 wi{0};          ///< from the reference point to the light, unit
   float distance = 0;  ///< infinity for infinite lights
-  Rgb radiance{0};     ///< arriving, unoccluded; with 1/d^2 for point and spot lights; NOT divided by pdf
+  Rgb radiance{0};     ///< arriving, unoccluded; with 1/d^2 for points, spots and projectors; NOT divided by pdf
   float pdf = 0;       ///< solid-angle density at the reference point [1/sr]; 1 for deltas; without the choice of light
 };
 
@@ -78,8 +78,8 @@ struct DirectSample {
 struct EmissionSample {
   LightPoint point;         ///< infinite: p is a point on the disk from which the ray starts, outside the scene
   Vec3 direction{0};        ///< of travel, unit
-  Rgb radiance{0};          ///< NOT divided by any pdf; point, spot: intensity; directional: irradiance
-  float pdf_position = 0;   ///< area: per area; infinite: per area of the disk across the scene; point, spot: 1
+  Rgb radiance{0};          ///< NOT divided by any pdf; point, spot, projector: intensity; directional: irradiance
+  float pdf_position = 0;   ///< area: per area; infinite: per area of the disk across the scene; others: 1
   float pdf_direction = 0;  ///< per solid angle; 1 for directional
 };
 
