@@ -125,7 +125,7 @@ Passed passed_by(const Fields& fields, const Subpath& subpath, int i, Side side,
 // after it.
 float brought_by(const Subpath& subpath, int i, Side side, float next) {
   const Vertex& v = subpath[i];
-  float sum = side == Side::camera ? v.shines : 0;
+  float sum = v.shines;
   if (connectable(v.guide)) sum += scatters(v.guide) * v.received;
   const float here = luminance(v.beta);
   if (i + 1 < subpath.n && here > 0) sum += next * luminance(subpath[i + 1].beta) / here;

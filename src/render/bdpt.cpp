@@ -29,12 +29,6 @@ void teach_light(const Work& work, const Vertex& v, LightChances& chances, const
   charge(work.scratch, work.scratch.ledger->learn_ticks);
 }
 
-// The other share of that.
-float share_of_hit(const Work& work, const Candidate& c) {
-  const double nee = c.camera.other * c.shares.light_first * c.shares.next_events;
-  return float(1 / (1 + raise(work.job.walk.heuristic, ratio(nee, c.camera.own))));
-}
-
 // s = 0: the camera subpath ran into a light.
 void join_surface(Work& work, const Surface& surface) {
   const Job& job = work.job;
@@ -43,7 +37,7 @@ void join_surface(Work& work, const Surface& surface) {
   if (job.scene->shapes[surface.shape].light == none) return;
   if (join_hit(*job.scene, job.walk.fields, camera, surface, c)) {
     add(work, c, 0, camera.n);
-    if (work.sample.teaches) camera[camera.n - 1].shines = luminance(c.arrives) * share_of_hit(work, c);
+    if (work.sample.teaches) camera[camera.n - 1].shines = luminance(c.arrives) * weigh(work, c);
   }
   charge_join(work.scratch, 0, camera.n);
 }
@@ -232,7 +226,7 @@ void join_escapes(Work& work, const Walk& walk) {
     if (join_escape(*work.job.scene, work.job.walk.fields, light, camera, walk, c)) {
       add(work, c, 0, camera.n + 1);
       if (!work.sample.teaches) continue;
-      found += luminance(c.arrives) * share_of_hit(work, c);
+      found += luminance(c.arrives) * weigh(work, c);
       if (work.job.guided) teach_escape(work, walk, light);
     }
   if (work.sample.teaches) camera.escape = escape_of(camera, walk, found);

@@ -30,16 +30,9 @@ void teach_start(const Work& work, const Subpath& light, const Walk& walk, bool 
   charge(work.scratch, work.scratch.ledger->learn_ticks);
 }
 
-// Share of the light that arrives at a vertex from a point of a light which rays that hit it bring better than
-// next-event estimation: of camera subpaths that go on as a matt surface would send them.
-float left_to_hits(const Work& work, const Vertex& v, const Vec3& d, const LightPoint& point) {
-  const double nee = connectable(v.guide) ? pdf_next_event(*work.job.scene, v.guide, point, d) : 0;
-  const double hit = inv_pi * std::abs(glm::dot(v.ng, d));
-  return float(1 / (1 + raise(work.job.walk.heuristic, ratio(nee, hit))));
-}
-
-// Luminance of the infinite lights in a direction, as far as it is left to hits.
-float sky_left_to_hits(const Work& work, const Vertex& v, const Vec3& d) {
+// Luminance of the infinite lights in a direction, as far as rays that hit them bring it better than next-event
+// estimation: of camera subpaths that go on as a matt surface would send them.
+float left_to_hits(const Work& work, const Vertex& v, const Vec3& d) {
   const Scene& scene = *work.job.scene;
   float sum = 0;
   for (const uint32_t light : scene.infinite_lights) {
@@ -47,18 +40,11 @@ float sky_left_to_hits(const Work& work, const Vertex& v, const Vec3& d) {
     if (!(radiance > 0)) continue;
     LightPoint point = light_point(scene, light, d);
     point.p = v.p;
-    sum += radiance * left_to_hits(work, v, d, point);
+    const double nee = connectable(v.guide) ? pdf_next_event(scene, v.guide, point, d) : 0;
+    const double hit = inv_pi * std::abs(glm::dot(v.ng, d));
+    sum += radiance / float(1 + raise(work.job.walk.heuristic, ratio(nee, hit)));
   }
   return sum;
-}
-
-// What the last vertex sends back as a lamp, as far as it is left to hits.
-float shine(const Work& work, const Subpath& light, const Surface& surface) {
-  const Scene& scene = *work.job.scene;
-  if (scene.shapes[surface.shape].light == none || light.n < 3) return 0;
-  const Vec3& d = light[light.n - 1].guide.wo;
-  const float radiance = luminance(emitted(scene, surface, d));
-  return radiance > 0 ? radiance * left_to_hits(work, light[light.n - 2], -d, light_point(scene, surface)) : 0;
 }
 
 }  // namespace
@@ -79,10 +65,9 @@ void trace_light_subpath(Work& work) {
     charge(work.scratch, work.scratch.ledger->light_ticks);
     if (!hit) {
       if (work.sample.teaches && job.guided && light.n > 1)
-        light.escape = escape_of(light, walk, sky_left_to_hits(work, light[light.n - 1], walk.d));
+        light.escape = escape_of(light, walk, left_to_hits(work, light[light.n - 1], walk.d));
       break;
     }
-    if (work.sample.teaches && job.guided) light[light.n - 1].shines = shine(work, light, surface);
     const bool scatters_here = connectable(light[light.n - 1].guide);
     if (scatters_here && !arrived) teach_start(work, light, walk, true);
     arrived |= scatters_here;

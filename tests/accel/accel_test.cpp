@@ -346,7 +346,7 @@ TEST(Accel, SmallTrianglesAreHitWithin) {
         const Mat4 grown = glm::scale(Mat4(1), Vec3(1 / size));
         scene.instances = {Instance{0, grown, glm::inverse(grown)}};
       }
-      const Accel accel(scene);
+      const Accel accel(finished(scene));
       const float seen = instanced ? 1 : size;
       int hits = 0;
       for (int i = 0; i < 2000; ++i) {

@@ -18,7 +18,8 @@ struct FieldCell {
   uint32_t root = none;  ///< of its strata
   float direct = 0;  ///< irradiance by light that next-event estimation brings (Q), or importance of the lens itself
                      ///< (W); not in the strata
-  float total = 0;   ///< irradiance: direct and over all strata
+  float total = 0;   ///< irradiance: direct and over all strata; of lamps that are hit, what is not left to light
+                     ///< subpaths
   float mix = 0;     ///< g of (G4) for a diffuse surface: how much the strata are trusted
   float visits = 0;  ///< vertices of subpaths of the side that it guides, per area of the cell and path
   float near = 0;    ///< 1 / R of (G7): reciprocal of how far away the things are that its strata hold [1/m]
