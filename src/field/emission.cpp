@@ -135,8 +135,8 @@ double camera_rays(const Fields& fields, const WayBack& way, const Vec3& wi) {
 
 // What a ray from the disk brings per watt. Rays of both sides teach, weighed by what both make of them, relative to
 // even starts.   (V8)
-void record_place(const Scene& scene, const Fields& fields, Training& training, uint32_t region, const Vec2& square,
-                  float per_watt, double of_light, double of_camera, float share) {
+void record_on_disk(const Scene& scene, const Fields& fields, Training& training, uint32_t region, const Vec2& square,
+                    float per_watt, double of_light, double of_camera, float share) {
   const double even = double(inv_pi) / sqr(double(scene.radius));
   record_square(fields.disk, training.disk, region, square, per_watt, share * float(even / (of_light + of_camera)));
 }
@@ -191,8 +191,8 @@ void record_start(const Scene& scene, const Fields& fields, Training& training, 
   if (!start.point.infinite) return;
   const uint32_t region = start_at(scene, &fields, start.point, start.direction).region;
   if (region >= fields.disk.cells.size()) return;
-  record_place(scene, fields, training, region, square_of(scene, start.point.p, start.direction), per_watt,
-               start.pdf_position, camera_rays(fields, way, start.direction) / double(start.pdf_direction), 1);
+  record_on_disk(scene, fields, training, region, square_of(scene, start.point.p, start.direction), per_watt,
+                 start.pdf_position, camera_rays(fields, way, start.direction) / double(start.pdf_direction), 1);
 }
 
 void record_start(const Scene& scene, const Fields& fields, Training& training, const LightPoint& point, const Vec3& wi,
@@ -202,8 +202,8 @@ void record_start(const Scene& scene, const Fields& fields, Training& training, 
   if (!(of_camera > 0) || start.region >= fields.disk.cells.size()) return;
   const Vec2 square = square_of(scene, way.guide->p, -wi);
   const float per_watt = through * scatters(*way.guide) * fields.w.cells[way.guide->cell].total;
-  record_place(scene, fields, training, start.region, square, per_watt,
-               double(disk_pdf(scene, &fields, start.region, square)), of_camera, 1 / float(count));
+  record_on_disk(scene, fields, training, start.region, square, per_watt,
+                 double(disk_pdf(scene, &fields, start.region, square)), of_camera, 1 / float(count));
 }
 
 }  // namespace ajar

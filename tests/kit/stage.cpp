@@ -49,4 +49,20 @@ Scene stage(int size) {
   return scene;
 }
 
+Scene under_a_lid(LightKind kind, float ground, int size) {
+  Scene scene;
+  scene.filter = make_filter(FilterKind::box);
+  set_camera(scene, {0, 0.8f, 1.9f}, {0, 0.5f, 0}, 60, size, size);
+  const uint32_t white = add_diffuse(scene, Rgb(0.7f));
+  add_quad(scene, {-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, white);
+  for (const float x : {-2.0f, 2.0f}) add_quad(scene, {x, 0, -2}, {0, 0, 4}, {0, 2, 0}, white);
+  for (const float z : {-2.0f, 2.0f}) add_quad(scene, {-2, 0, z}, {4, 0, 0}, {0, 2, 0}, white);
+  for (const float z : {-2.0f, 0.4f}) add_quad(scene, {-2, 2, z}, {4, 0, 0}, {0, 0, 1.6f}, white);
+  for (const float x : {-2.0f, 0.4f}) add_quad(scene, {x, 2, -0.4f}, {1.6f, 0, 0}, {0, 0, 0.8f}, white);
+  add_quad(scene, {-ground, -0.1f, ground}, {2 * ground, 0, 0}, {0, 0, -2 * ground}, add_diffuse(scene, Rgb(0)));
+  scene.lights[add_light(scene, kind, Rgb(1))].direction = glm::normalize(Vec3(0.1f, -1, 0.05f));
+  finish(scene);
+  return scene;
+}
+
 }  // namespace ajar::kit

@@ -20,4 +20,8 @@ uint32_t add_lamp(Scene& scene, float half, const Slot& radiance);
 /// to be called.
 Scene stage(int size = 24);
 
+/// A closed box of 4 x 2 x 4, seen from within, with a hole of 0.8 x 0.8 in its lid, on dark ground that reaches so far
+/// in all directions, under a light of the kind (infinite): the further, the fewer light subpaths come in. Finished.
+Scene under_a_lid(LightKind kind, float ground, int size);
+
 }  // namespace ajar::kit

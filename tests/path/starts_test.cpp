@@ -55,32 +55,12 @@ void teach_by_camera(const Scene& scene, const Accel& accel, const Fields& field
   }
 }
 
-// A closed box with a hole in its lid, far from whose walls the ground goes on: hardly a light subpath comes in.
-Scene under_a_lid(LightKind kind) {
-  Scene scene;
-  scene.filter = make_filter(FilterKind::box);
-  set_camera(scene, {0, 0.8f, 1.9f}, {0, 0.5f, 0}, 60, 24, 24);
-  const uint32_t white = add_diffuse(scene, Rgb(0.7f));
-  add_quad(scene, {-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, white);  // the floor
-  for (const float x : {-2.0f, 2.0f}) add_quad(scene, {x, 0, -2}, {0, 0, 4}, {0, 2, 0}, white);
-  for (const float z : {-2.0f, 2.0f}) add_quad(scene, {-2, 0, z}, {4, 0, 0}, {0, 2, 0}, white);
-  add_quad(scene, {-2, 2, -2}, {4, 0, 0}, {0, 0, 1.6f}, white);  // the lid, round a hole of 0.8 x 0.8
-  add_quad(scene, {-2, 2, 0.4f}, {4, 0, 0}, {0, 0, 1.6f}, white);
-  add_quad(scene, {-2, 2, -0.4f}, {1.6f, 0, 0}, {0, 0, 0.8f}, white);
-  add_quad(scene, {0.4f, 2, -0.4f}, {1.6f, 0, 0}, {0, 0, 0.8f}, white);
-  add_quad(scene, {-5, -0.1f, 5}, {10, 0, 0}, {0, 0, -10}, add_diffuse(scene, Rgb(0)));
-  Light& light = scene.lights[add_light(scene, kind, Rgb(1))];
-  light.direction = glm::normalize(Vec3(0.1f, -1, 0.05f));
-  finish(scene);
-  return scene;
-}
-
 // Both sides' records, weighed by both sides' densities, are light subpaths' in the mean: as much evidence, and as much
 // importance.
 TEST(Starts, BothSidesTeachTheSame) {
   for (const LightKind kind : {LightKind::constant, LightKind::directional})
     for (const int rays : {1, 4}) {
-      const Scene scene = under_a_lid(kind);
+      const Scene scene = kit::under_a_lid(kind, 5, 24);
       const Accel accel(scene);
       const Fields fields = train(scene, accel, 6, 8000);
       constexpr int paths = 200'000;
