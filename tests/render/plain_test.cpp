@@ -247,17 +247,23 @@ TEST(Plain, KeepsWhatWasTooBrightByChance) {
   EXPECT_TRUE(state.plain.taken);
 }
 
-// A sun of four texels behind a ball of glass: 32 squares and a dozen samples do not meet its caustic.
+// A sun of four texels behind a ball of glass: 32 squares and a dozen samples do not meet its caustic, by two seeds in
+// five.
 TEST(Plain, GivesBackWhatIsRare) {
   LoadOptions load;
   load.defines = {{"resx", "96"}, {"resy", "54"}};
   const Scene scene = load_scene(source_path("scenes/environment/environment.xml"), load);
   const Accel accel(scene);
-  RenderOptions sparing_one = sparing("guided-bdpt", 68), other = options_of("guided-bdpt", 68);
-  sparing_one.seed = other.seed = 11;
-  const RenderState state = rendered(scene, accel, sparing_one);
+  RenderOptions o = sparing("guided-bdpt", 17);
+  RenderState state;
+  while (!state.plain.taken && o.seed < 24) ++o.seed, state = rendered(scene, accel, o);
+  ASSERT_TRUE(state.plain.taken);
+  o.spp = 68;
+  render(scene, accel, o, state, {});
   EXPECT_FALSE(state.plain.taken);
   EXPECT_GE(state.plain.returned, 4u);
+  RenderOptions other = options_of("guided-bdpt", 68);
+  other.seed = o.seed;
   expect_same_image(state, rendered(scene, accel, other));
 }
 
