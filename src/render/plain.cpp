@@ -14,9 +14,9 @@ namespace {
 constexpr uint32_t first_look = 4, last_look = 64;  // passes
 constexpr uint32_t least_squares = 32, most_squares = 128;
 constexpr double fastest = 16;  // of path tracing: passes for one of the guided integrator
-// Below 1 - young / passes of the guided integrator's error after equal time path tracing takes over: what guides errs
-// less and less per pass, as fields learn.
-constexpr double young = 3;
+// Quotients below which path tracing takes over: what guides errs a little less with every pass to come, and a first look
+// misses what is rare.
+double little(uint32_t passes) { return passes == first_look ? 0.25 : 0.8; }
 // Quotients above which it is not looked at again, after so many passes: what guides errs less with every pass.
 double too_much(uint32_t passes) { return passes == first_look ? 8 : passes < 16 ? 2 : passes < 32 ? 1.4 : 1.1; }
 // Factor on the error of what merges: blur within squares is not seen. By errors against references
@@ -108,7 +108,7 @@ void decide(double error, double deviation, double guided, double samples, uint3
   plain.passes = passes, plain.pace = samples / passes;
   plain.guided_error = guided * passes, plain.plain_error = error * samples;
   plain.ratio = guided > 0 ? most / guided : 0;
-  plain.taken = plain.ratio > 0 && plain.ratio < 1 - young / passes && most * samples < tame;
+  plain.taken = plain.ratio > 0 && plain.ratio < little(passes) && most * samples < tame;
   plain.settled = plain.taken || passes == last_look || least > too_much(passes) * guided || least * samples > wild;
 }
 
