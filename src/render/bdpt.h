@@ -2,18 +2,9 @@
 // Leaves: the one weighed, where it belongs; what the other teaches. For both halves of bidirectional path tracing.
 #pragma once
 
-#include "job.h"
+#include "contribution.h"
 
 namespace ajar {
-
-/// One camera sample with its light subpath, at work.
-struct Work {
-  const Job& job;
-  Sample& sample;
-  Scratch& scratch;
-  double light_share = 1;  ///< of the light walk, for s = 2
-  float pixel = -1;        ///< radiance that the pixel is expected to have; 0: fields do not know; -1: not asked yet
-};
 
 inline float weigh(const Work& work, Candidate& c) {
   c.shares.inner = work.job.walk.inner_share, c.shares.seen = work.job.walk.seen_share;
@@ -24,27 +15,15 @@ inline float weigh(const Work& work, Candidate& c) {
 
 /// Weighs a visible candidate and puts it where it belongs.
 inline void add(Work& work, Candidate& c, int s, int t) {
-  const float w = weigh(work, c);
-  const Rgb weighted = c.value * w;
-  if (!accept(weighted, work.sample, work.scratch)) return;
-  if (t == 1) {
-    work.scratch.splats->push_back({c.raster, weighted * work.scratch.halves->splat_counts});
-    gain_splat(work.job, work.scratch);
-  } else {
-    work.sample.value += weighted;
-    gain(work.scratch, s, t, weighted * work.sample.filter);
-  }
-  if (!work.scratch.strategies) return;
-  // What the camera sample found gets its filter here; splats are filtered on the film.
-  const Vec2 raster = t == 1 ? c.raster : Vec2(work.sample.x, work.sample.y);
-  const float filter = t == 1 ? work.scratch.halves->splat_counts : work.sample.filter;
-  work.scratch.strategies->push_back({s, t, raster, c.value * filter, weighted * filter});
+  const Rgb weighted = c.value * weigh(work, c);
+  if (t == 1)
+    add_splat(work.job, work.sample, work.scratch, c.raster, c.value, weighted);
+  else
+    add_to_pixel(work.sample, work.scratch, s, t, c.value, weighted);
 }
 
 inline bool add_if_visible(Work& work, Candidate& c, int s, int t) {
-  ++work.scratch.counters.shadow_rays;
-  ++work.scratch.ledger->at(s, t).rays;
-  if (!is_unblocked(work.job, c.segment, t)) return false;
+  if (!is_unblocked(work.job, c.segment, s, t, work.scratch)) return false;
   add(work, c, s, t);
   return true;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ajar/join/pool.h"
+#include "contribution.h"
 
 namespace ajar {
 
@@ -79,7 +80,7 @@ Rgb trace_pixel(const Job& job, Sample& sample, bool splat, Scratch& scratch) {
   const size_t splats = scratch.splats->size();
   scratch.clock = is_timed(sample) ? clock_ticks() : 0;
   job.trace(job, sample, scratch);
-  if (!accept(sample.value, sample, scratch)) sample.value = Rgb(0);
+  if (!accept(sample.value, sample.path, scratch)) sample.value = Rgb(0);
   ++scratch.counters.camera_paths;
   scratch.counters.zero_paths += is_black(sample.value) && !splat && scratch.splats->size() == splats;
   return sample.value * sample.filter;

@@ -123,10 +123,14 @@ struct alignas(64) Scratch {
   static constexpr uint64_t no_path = ~0ull;
 };
 
-/// Whether nothing is in the way of a join to the t-th camera vertex; the first is the lens.
-inline bool is_unblocked(const Job& job, const Segment& s, int t) {
-  return t == 1 ? camera_sees(*job.scene, *job.accel, s.o, s.d, s.t_max) : visible(*job.accel, s);
-}
+/// One camera sample with its light subpath, at work.
+struct Work {
+  const Job& job;
+  Sample& sample;
+  Scratch& scratch;
+  double light_share = 1;  ///< of the light walk, for s = 2
+  float pixel = -1;        ///< radiance that the pixel is expected to have; 0: fields do not know; -1: not asked yet
+};
 
 void trace_path(const Job&, Sample&, Scratch&);
 void trace_bdpt(const Job&, Sample&, Scratch&);
@@ -167,62 +171,5 @@ bool is_one_in(uint32_t n, const Sample& sample);
 void keep_photons(const Job& job, const Sample& sample, double share, Scratch& scratch);
 /// s >= 2: all light vertices near the last vertex of the camera subpath.
 void join_merged(const Job& job, Sample& sample, Scratch& scratch);
-
-/// The time since the last charge goes to a part of the ledger.
-inline void charge(Scratch& scratch, uint64_t& part) {
-  if (scratch.clock == 0) return;
-  const uint64_t now = clock_ticks(), took = now - scratch.clock;
-  if (took < interrupted_ticks) part += took;
-  scratch.clock = now;
-}
-
-/// A join was tried, with success or without.
-inline void charge_join(Scratch& scratch, int s, int t) {
-  StrategyCost& cost = scratch.ledger->at(s, t);
-  ++cost.joins;
-  scratch.counters.joins += t > 1;
-  charge(scratch, cost.ticks);
-}
-
-/// Notes what a join adds to its pixel; its luminance.
-inline double gain(StrategyCost& cost, const Rgb& pixel) {
-  ++cost.visible;
-  const float energy = luminance(pixel);
-  if (!(std::abs(energy) < infinity)) return 0;
-  cost.energy += double(energy);
-  return double(energy);
-}
-inline void gain(Scratch& scratch, int s, int t, const Rgb& pixel) { gain(scratch.ledger->at(s, t), pixel); }
-
-/// Whether light came to the subpath's last vertex by way of a delta event.
-inline bool came_by_delta(const Subpath& light) {
-  for (int i = 1; i + 1 < light.n; ++i)
-    if (light[i].delta) return true;
-  return false;
-}
-
-/// The same of the last splat, that of the light subpath's last vertex; its filter's integral is 1. What filters carry
-/// over the border of the film, one way and the other, is taken for equal.
-inline void gain_splat(const Job& job, Scratch& scratch) {
-  const Splat& splat = scratch.splats->back();
-  const Camera& c = job.scene->camera;
-  const Vec2 at = splat.raster - Vec2(c.crop_x, c.crop_y);
-  const bool inside = at.x >= 0 && at.y >= 0 && at.x < float(c.crop_width) && at.y < float(c.crop_height);
-  const double pixels = double(c.crop_width) * c.crop_height;
-  const Rgb pixel = inside ? splat.value * float(1 / pixels) : Rgb(0);
-  const double energy = gain(scratch.ledger->at(scratch.light.n, 1), pixel);
-  if (came_by_delta(scratch.light)) scratch.ledger->caustics += energy;
-}
-
-/// Law 6: only finite, non-negative values may go on; others are counted, and the path of the first is kept.
-inline bool accept(const Rgb& value, uint64_t path, Scratch& scratch) {
-  if (value.x >= 0 && value.y >= 0 && value.z >= 0 && value.x + value.y + value.z < infinity) return true;
-  ++scratch.rejected;
-  if (scratch.rejected_at == Scratch::no_path) scratch.rejected_at = path;
-  return false;
-}
-inline bool accept(const Rgb& value, const Sample& sample, Scratch& scratch) {
-  return accept(value, sample.path, scratch);
-}
 
 }  // namespace ajar

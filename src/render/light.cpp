@@ -1,6 +1,6 @@
 // Light tracing alone: light subpaths, every vertex joined to the lens (t = 1).
 
-#include "job.h"
+#include "contribution.h"
 
 namespace ajar {
 
@@ -15,14 +15,9 @@ void trace_light(const Job& job, Sample& sample, Scratch& scratch) {
   for (;;) {
     Candidate c;
     const bool joins = light.n == 1 || connectable(light[light.n - 1].guide);
-    if (joins && join_camera(scene, sample.lens, light, light.n, 1, job.walk.light_paths, c)) {
-      ++scratch.counters.shadow_rays;
-      ++scratch.ledger->at(light.n, 1).rays;
-      if (is_unblocked(job, c.segment, 1) && accept(c.value, sample, scratch)) {
-        scratch.splats->push_back({c.raster, c.value});
-        gain_splat(job, scratch);
-      }
-    }
+    if (joins && join_camera(scene, sample.lens, light, light.n, 1, job.walk.light_paths, c) &&
+        is_unblocked(job, c.segment, light.n, 1, scratch))
+      add_splat(job, sample, scratch, c.raster, c.value, c.value);
     if (joins) charge_join(scratch, light.n, 1);
     if (light.n >= job.walk.max_edges) return;
     if (light.n > 1 && !scatter(job.walk, sampler, light, walk)) return;

@@ -1,6 +1,6 @@
 // Merging: camera vertices take the light that arrives at light vertices near them (Georgiev et al. 2012).
 
-#include "job.h"
+#include "contribution.h"
 
 namespace ajar {
 namespace {
@@ -110,12 +110,7 @@ float chance_to_try(float adds, float found) {
 void add_merged(const Merged& sums, int t, const Rgb& factor, Sample& sample, Scratch& scratch) {
   for (int s = 2; s <= most_vertices; ++s) {
     const Rgb found = sums.weighted[size_t(s)] * factor;
-    if (is_black(found) || !accept(found, sample, scratch)) continue;
-    sample.value += found;
-    gain(scratch.ledger->merge_at(s, t), found * sample.filter);
-    if (scratch.strategies)
-      scratch.strategies->push_back(
-          {-s, t, Vec2(sample.x, sample.y), sums.raw[size_t(s)] * factor * sample.filter, found * sample.filter});
+    if (!is_black(found)) add_to_pixel(sample, scratch, -s, t, sums.raw[size_t(s)] * factor, found);
   }
 }
 

@@ -1,6 +1,6 @@
 // Unidirectional path tracing with next-event estimation: camera subpaths, strategies s = 0 and s = 1 alone.
 
-#include "job.h"
+#include "contribution.h"
 
 namespace ajar {
 namespace {
@@ -47,9 +47,7 @@ Rgb direct(const Job& job, const Guide& guide, const Surface& at, Sampler& sampl
     learn(0);
     return Rgb(0);
   }
-  ++scratch.counters.shadow_rays;
-  ++scratch.ledger->at(1, t).rays;
-  const bool free = visible(*job.accel, segment_to(d, at.p, at.ng, at.error));
+  const bool free = is_unblocked(job, segment_to(d, at.p, at.ng, at.error), 1, t, scratch);
   learn(free ? max_component(d.radiance) * std::abs(glm::dot(at.ng, d.wi)) / d.pdf : 0);
   if (!free) return Rgb(0);
   const LightPoint& l = d.point;
@@ -70,10 +68,7 @@ struct Flight {
 
 // What a join of s light and t camera vertices found goes to its pixel.
 void add(Sample& sample, Scratch& scratch, int s, int t, const Rgb& found) {
-  if (!is_black(found)) {
-    sample.value += found;
-    gain(scratch, s, t, found * sample.filter);
-  }
+  if (!is_black(found)) add_to_pixel(sample, scratch, s, t, found, found);
   charge_join(scratch, s, t);
 }
 

@@ -2,7 +2,7 @@
 // the light vertices nearby, and nothing else (Jensen 1996; the radius shrinks from pass to pass as in Knaus and
 // Zwicker 2011).
 
-#include "job.h"
+#include "contribution.h"
 
 namespace ajar {
 
@@ -32,10 +32,7 @@ void follow(const Job& job, Sample& sample, Scratch& scratch, Walk walk, bool ga
   Subpath& camera = scratch.camera;
   Surface surface;
   const auto add = [&](int t, const Rgb& found) {
-    sample.value += found;
-    const Rgb filtered = found * sample.filter;
-    gain(scratch, 0, t, filtered);
-    if (scratch.strategies) scratch.strategies->push_back({0, t, Vec2(sample.x, sample.y), filtered, filtered});
+    add_to_pixel(sample, scratch, 0, t, found, found);
     charge_join(scratch, 0, t);
   };
   do {

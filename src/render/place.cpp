@@ -4,7 +4,7 @@
 #include "ajar/core/parallel.h"
 #include "ajar/field/probes.h"
 #include "ajar/join/pool.h"
-#include "job.h"
+#include "contribution.h"
 
 namespace ajar {
 namespace {

@@ -3,26 +3,13 @@
 // what other renderers clamp away is so found by a short walk, and the image is unbiased given the fields
 // (docs/method.md, "Virtual point lights").
 
-#include "job.h"
+#include "contribution.h"
 
 namespace ajar {
 namespace {
 
-struct Gathering {
-  const Job& job;
-  Sample& sample;
-  Scratch& scratch;
-};
-
-void add(Gathering& work, const Candidate& c, float weight, int s, int t) {
-  const Rgb value = c.value * weight;
-  if (!accept(value, work.sample, work.scratch)) return;
-  work.sample.value += value;
-  gain(work.scratch, s, t, value * work.sample.filter);
-  if (!work.scratch.strategies) return;
-  const Rgb filtered = value * work.sample.filter;
-  work.scratch.strategies->push_back(
-      {s, t, Vec2(work.sample.x, work.sample.y), c.value * work.sample.filter, filtered});
+void add(Work& work, const Candidate& c, float weight, int s, int t) {
+  add_to_pixel(work.sample, work.scratch, s, t, c.value, c.value * weight);
 }
 
 // Whether a path of n camera vertices comes to what the lens sees by way of a delta event, at which only light subpaths
@@ -33,23 +20,21 @@ bool is_caustic(const Subpath& camera, int n) {
 
 // Of hits and next-event estimation among each other, and of what only light subpaths can aim at: nothing else finds
 // what they find.
-float weigh(const Gathering& work, Candidate& c) {
+float weigh_unjoined(const Work& work, Candidate& c) {
   c.shares.inner = c.shares.seen = 0;
   if (!is_caustic(work.scratch.camera, c.camera.n)) c.camera.sum_before = 0;
   return float(weight(work.job.walk.heuristic, c));
 }
 
 // The same of a path that is joined further up: what is left to all that joins and walks share.
-float share_of_camera(const Gathering& work, Candidate& c) {
+float share_of_camera(const Work& work, Candidate& c) {
   if (!is_caustic(work.scratch.camera, c.camera.n)) return 1;
   c.shares.inner = c.shares.seen = 0;
   return float(mis_of_camera(work.job.walk.heuristic, c.light, c.camera, c.shares));  // (I3)
 }
 
-bool is_free(Gathering& work, Candidate& c, int s, int t) {
-  ++work.scratch.counters.shadow_rays;
-  ++work.scratch.ledger->at(s, t).rays;
-  if (!visible(*work.job.accel, c.segment)) return false;
+bool is_free(Work& work, Candidate& c, int s, int t) {
+  if (!is_unblocked(work.job, c.segment, s, t, work.scratch)) return false;
   complete(c);
   return true;
 }
@@ -68,7 +53,7 @@ double share_at(const Job& job, const LightStore::Place& at, const Vec3& x, doub
 
 // Whether the walk is to find what its last vertex y scatters, which joins at the one before could have found as well.
 // What passes y by a delta event they could not.
-bool is_walked(Gathering& work, const Surface& surface) {
+bool is_walked(Work& work, const Surface& surface) {
   const Subpath& camera = work.scratch.camera;
   const Vertex &x = camera[camera.n - 2], &y = camera[camera.n - 1];
   if (camera.n < 3 || x.delta || !connectable(x.guide) || !connectable(y.guide)) return true;
@@ -101,16 +86,16 @@ void find_cell(const Job& job, Vertex& v) {
   v.guide.cell = find(v.guide.fields->table, v.p, facing(v.ng, v.guide.wo)).cell;
 }
 
-void join_lights(Gathering& work, const Surface& surface) {
+void join_lights(Work& work, const Surface& surface) {
   const Job& job = work.job;
   const Subpath& camera = work.scratch.camera;
   Candidate c;
   if (job.scene->shapes[surface.shape].light == none) return;
-  if (join_hit(*job.scene, job.walk.fields, camera, surface, c)) add(work, c, weigh(work, c), 0, camera.n);
+  if (join_hit(*job.scene, job.walk.fields, camera, surface, c)) add(work, c, weigh_unjoined(work, c), 0, camera.n);
   charge_join(work.scratch, 0, camera.n);
 }
 
-void join_next_event(Gathering& work) {
+void join_next_event(Work& work) {
   const Job& job = work.job;
   const Subpath& camera = work.scratch.camera;
   const Vertex& v = camera[camera.n - 1];
@@ -120,13 +105,13 @@ void join_next_event(Gathering& work) {
   if (job.scene->lights.empty()) return;
   if (draw_light(*job.scene, v.guide, work.sample.sampler, u) &&
       join_light(*job.scene, job.walk.fields, camera, camera.n, chances, u, 0, c) && is_free(work, c, 1, camera.n))
-    add(work, c, weigh(work, c), 1, camera.n);
+    add(work, c, weigh_unjoined(work, c), 1, camera.n);
   charge_join(work.scratch, 1, camera.n);
 }
 
 constexpr int further_joins = 8;  // at all but the first surface
 
-void join_vpls(Gathering& work) {
+void join_vpls(Work& work) {
   const Job& job = work.job;
   Scratch& scratch = work.scratch;
   const Subpath& camera = scratch.camera;
@@ -158,7 +143,7 @@ bool is_clear(const Vertex& v) { return !connectable(v.guide); }
 
 // Follows the camera subpath, and joins what can be joined on the way. Stops at the first surface if that is to be
 // followed several times.
-void walk_on(Gathering& work, Walk& walk) {
+void walk_on(Work& work, Walk& walk) {
   const Job& job = work.job;
   Sample& sample = work.sample;
   Scratch& scratch = work.scratch;
@@ -173,7 +158,7 @@ void walk_on(Gathering& work, Walk& walk) {
       Candidate c;
       for (const uint32_t light : job.scene->infinite_lights)
         if (join_escape(*job.scene, job.walk.fields, light, camera, walk, c))
-          add(work, c, weigh(work, c), 0, camera.n + 1);
+          add(work, c, weigh_unjoined(work, c), 0, camera.n + 1);
       charge_join(scratch, 0, camera.n + 1);
       return;
     }
@@ -196,7 +181,7 @@ constexpr int clear_branches = 8;
 }  // namespace
 
 void trace_vpl(const Job& job, Sample& sample, Scratch& scratch) {
-  Gathering work{job, sample, scratch};
+  Work work{job, sample, scratch};
   Subpath& camera = scratch.camera;
   Walk walk;
   start_camera(*job.scene, job.vpls->camera, sample.raster, sample.lens, camera, walk);
