@@ -101,8 +101,9 @@ bool step(const Scene& scene, const Accel& accel, const WalkOptions& options, Su
   const CameraRay ray{walk.o, walk.d, walk.t_min, walk.t_max};
   const bool looks = subpath.n == 1 && walk.side == Side::camera;
   Hit hit;
-  if (!(looks ? first_seen(scene, accel, ray, hit) : accel.intersect(ray.o, ray.d, ray.t_min, ray.t_max, hit)))
-    return false;
+  walk.escaped =
+      !(looks ? first_seen(scene, accel, ray, hit) : accel.intersect(ray.o, ray.d, ray.t_min, ray.t_max, hit));
+  if (walk.escaped) return false;
   surface = make_surface(scene, hit, walk.o, walk.d);
   Vertex& v = subpath.add();
   const Vertex& before = subpath[subpath.n - 2];

@@ -58,16 +58,7 @@ void trace_light_subpath(Work& work) {
   ++work.scratch.counters.light_paths;
   Surface surface;
   bool arrived = false;
-  while (light.n < job.walk.max_edges) {
-    if (light.n > 1 && !scatter(job.walk, sampler, light, walk)) break;
-    ++work.scratch.counters.light_rays;
-    const bool hit = step(*job.scene, *job.accel, job.walk, light, walk, surface);
-    charge(work.scratch, work.scratch.ledger->light_ticks);
-    if (!hit) {
-      if (work.sample.teaches && job.guided && light.n > 1)
-        light.escape = escape_of(light, walk, left_to_hits(work, light[light.n - 1], walk.d));
-      break;
-    }
+  while (follow_light(job, sampler, work.scratch, walk, surface)) {
     const bool scatters_here = connectable(light[light.n - 1].guide);
     if (scatters_here && !arrived) teach_start(work, light, walk, true);
     arrived |= scatters_here;
@@ -80,12 +71,13 @@ void trace_light_subpath(Work& work) {
     charge_join(work.scratch, light.n, 1);
     teach_direct(work, light[light.n - 1], seen ? luminance(c.arrives) : 0);
   }
+  if (walk.escaped && work.sample.teaches && job.guided && light.n > 1)
+    light.escape = escape_of(light, walk, left_to_hits(work, light[light.n - 1], walk.d));
   if (!arrived) teach_start(work, light, walk, false);
 }
 
 void trace_light_half(const Job& job, Sample& sample, Scratch& scratch) {
   Work work{job, sample, scratch};
-  scratch.light.n = 0;
   trace_light_subpath(work);
   if (!job.merges_alone) add(scratch.traced, scratch.light, work.light_share);
   if (job.walk.merging.paths > 0) keep_photons(job, sample, work.light_share, scratch);

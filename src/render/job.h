@@ -135,6 +135,8 @@ struct Work {
 void trace_path(const Job&, Sample&, Scratch&);
 void trace_bdpt(const Job&, Sample&, Scratch&);
 void trace_light(const Job&, Sample&, Scratch&);
+/// Follows the scratch's light subpath, which was started, to its next vertex; false where it ends or escapes (Walk).
+bool follow_light(const Job&, Sampler&, Scratch&, Walk&, Surface&);
 void trace_vpl(const Job&, Sample&, Scratch&);
 /// How many lights and joins there are to be.
 Vpls make_vpls(const Scene&, const Film&, bool guided);

@@ -46,15 +46,11 @@ Sampler numbers_of(const Job& job, uint64_t stream, uint32_t pass, uint32_t path
 void trace_lights(const Job& job, Sampler sampler, uint32_t path, Scratch& scratch, Group& out) {
   Subpath& light = scratch.light;
   Walk walk;
-  light.n = 0;
   out.may_light.assign(2, false);
   if (start_light(*job.scene, job.walk, sampler, light, walk)) {
     ++scratch.counters.light_paths;
     Surface surface;
-    while (light.n < job.walk.max_edges) {
-      if (light.n > 1 && !scatter(job.walk, sampler, light, walk)) break;
-      ++scratch.counters.light_rays;
-      if (!step(*job.scene, *job.accel, job.walk, light, walk, surface)) break;
+    while (follow_light(job, sampler, scratch, walk, surface)) {
       join_lens(job, sampler, walk.first_share, path, scratch, out.splats);
       out.may_light.push_back(can_light(*job.scene, surface, light[light.n - 1].guide));
     }
@@ -104,7 +100,7 @@ std::vector<Group> trace_groups(const Job& job, uint64_t stream, uint32_t pass, 
     Scratch& scratch = scratches[thread_slot()];
     Group& group = groups[g];
     clear(scratch.traced);
-    scratch.rejected_at = Scratch::no_path;
+    scratch.rejected_at = Scratch::no_path, scratch.clock = 0;
     const uint32_t from = uint32_t(g) * grain, to = std::min(paths, from + grain);
     for (uint32_t i = from; i < to; ++i) trace_lights(job, numbers_of(job, stream, pass, i), i, scratch, group);
     if (job.vpls->least > 0) select_lights(job, pass, uint32_t(g), scratch.traced);

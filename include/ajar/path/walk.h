@@ -73,6 +73,7 @@ struct Walk {
   bool planar = false;      ///< parallel light from infinity: no 1/d^2
   double other_before = 0;  ///< area density of a_(n-2) as the other side would generate it from a_(n-1)
   double sum = 0;           ///< S of the vertex that the ray leaves (R2); set by step, also when the ray escapes
+  bool escaped = false;     ///< the ray left the scene
   double first_share = 1;   ///< v_1 of (R2), not raised
   EmissionSample start;     ///< of a light subpath
   Rgb survival{1};          ///< throughput since the start, for roulette
