@@ -5,15 +5,6 @@
 namespace ajar {
 namespace {
 
-// The end of a subpath at its last vertex, not its first, from which the other side's vertex lies in direction w: other
-// is what the other side's density becomes here, reverse the density of going back to the vertex before.
-End end_at(std::span<const Vertex> subpath, double other, double reverse) {
-  const Vertex& v = subpath.back();
-  const Vertex& before = subpath[subpath.size() - 2];
-  const bool delta = before.delta;
-  return {int(subpath.size()), v.own, other, before.own, reverse * v.back, delta, v.sum, v.merge, v.seen, before.seen};
-}
-
 // The camera's end on a light, n-th of its vertices, that a ray from the vertex before ran into.
 End end_on_light(int n, double own, double other, const Vertex& before, double other_before, double sum) {
   return {n, own, other, before.own, other_before, before.delta, sum, 0, false, before.seen};
@@ -27,6 +18,13 @@ Shares shares_from(const Vertex& v, double first, double light_paths) {
 }
 
 }  // namespace
+
+End end_at(std::span<const Vertex> subpath, double other, double reverse) {
+  const Vertex& v = subpath.back();
+  const Vertex& before = subpath[subpath.size() - 2];
+  const bool delta = before.delta;
+  return {int(subpath.size()), v.own, other, before.own, reverse * v.back, delta, v.sum, v.merge, v.seen, before.seen};
+}
 
 bool join_hit(const Scene& scene, const Fields* fields, const Subpath& camera, const Surface& surface, Candidate& out) {
   const LightPoint point = light_point(scene, surface);
@@ -83,7 +81,7 @@ bool join_light(const Scene& scene, const Fields* fields, const Subpath& camera,
   const double own = point.infinite ? emission.direction : emission.position;
   const double to_here = point.infinite ? emission.position : emission.direction;
   const double nee = hittable ? double(d.pdf) * cos_light / d2 : double(d.pdf);
-  out.light = {1, own, 0, 1, 0, false, hittable ? 1.0 : 0.0};
+  out.light = {.n = 1, .own = own, .sum_before = hittable ? 1.0 : 0.0};
   out.light_found = {&c.guide, d.wi, e.pdf, cos_light, d2};
   out.camera = end_at(camera.first(t), to_here * cos_here / d2, e.pdf_reverse);
   out.shares = shares_from(c, ratio(nee, own), light_paths);
@@ -131,14 +129,14 @@ bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int
   if (s == 1) {  // the light's own point, seen directly
     if (a.point.delta_position || !(glm::dot(a.ng, k.w) > 0)) return false;
     out.value = a.beta * float(cosine * k.factor);
-    out.light = {1, a.own, k.factor * cosine, 1, 0, false, a.sum};
+    out.light = {.n = 1, .own = a.own, .other = k.factor * cosine, .sum_before = a.sum};
   } else {
     const GuideEval e = evaluate_bsdf(a.guide, k.w, Mode::importance);
     out.value = a.beta * e.f_cos * k.factor;  // (P3)
     out.light = end_at(light.first(s), k.factor * cosine, e.pdf_reverse);
   }
   if (is_black(out.value)) return false;
-  out.camera = {1, 1, 0, 1, 0, false, 0};
+  out.camera = {.n = 1};
   out.shares = {share, light_paths};
   out.raster = k.raster;
   const Vec3 from = a.ng == Vec3(0) ? a.p : offset(a.p, a.ng, a.error, k.w);

@@ -5,6 +5,7 @@
 
 #include "ajar/core/error.h"
 #include "ajar/core/parallel.h"
+#include "ajar/join/connect.h"
 
 namespace ajar {
 namespace {
@@ -108,11 +109,9 @@ void add_photons(Photons& photons, const Subpath& light, Heuristic h, double inn
     straight = straight && (s == 2 || light[s - 2].delta);
     // Where the normals disagree nothing scatters, but light arrives there all the same, and is merged beside it.
     if (!v.guide.bsdf.has_smooth || is_black(v.beta) || !(v.merge > 0)) continue;
-    const Vertex& before = light[s - 2];
     Shares shares;
     shares.light_first = share, shares.inner = inner;
-    const MergeSide side =
-        merge_side(h, {s, v.own, 0, before.own, 0, before.delta, v.sum, v.merge}, v.back, shares, Side::light);
+    const MergeSide side = merge_side(h, end_at(light.first(s), 0, 0), v.back, shares, Side::light);
     Photon& p = photons.emplace_back();
     p.p = v.p, p.s = s;
     p.wi = v.guide.wo, p.beta = v.beta;

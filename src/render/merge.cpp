@@ -128,19 +128,12 @@ Shares shares_of(const WalkOptions& walk) {
   return shares;
 }
 
-MergeSide camera_side(const Job& job, const Subpath& camera) {
-  const int t = camera.n;
-  const Vertex &v = camera[t - 1], &before = camera[t - 2];
-  const End end{t, v.own, 0, before.own, 0, before.delta, v.sum, v.merge, v.seen, before.seen};
-  return merge_side(job.walk.heuristic, end, v.back, shares_of(job.walk), Side::camera);
-}
-
 // What all light vertices within the radius would bring, were they in sight. Returns the luminance of their sum.
 float find_near(const Job& job, const Subpath& camera, bool inner, float radius, Scratch& scratch) {
   const int t = camera.n, most = job.walk.max_edges + 2 - t;
   const Vertex& v = camera[t - 1];
-  const MergeSide side = camera_side(job, camera);
   const Shares shares = shares_of(job.walk);
+  const MergeSide side = merge_side(job.walk.heuristic, end_at(camera.first(t), 0, 0), v.back, shares, Side::camera);
   float sum = 0;
   scratch.near.clear();
   for_each_near(job.photons[inner], v.p, radius, [&](const Photon& p) {

@@ -33,6 +33,9 @@ struct Candidate {
                      ///< irradiance, t = 1 importance (raster area per area); divided by densities, without visibility
 };
 
+/// The end of a subpath of two vertices or more at its last one: other is its area density from the other side, reverse
+/// the density per solid angle of going back to the vertex before.
+End end_at(std::span<const Vertex> subpath, double other, double reverse);
 /// s = 0: the camera subpath's last vertex is on a light. surface is that of the vertex.
 bool join_hit(const Scene& scene, const Fields* fields, const Subpath& camera, const Surface& surface, Candidate& out);
 /// s = 0: the camera subpath left the scene in the walk's direction; one infinite light.
