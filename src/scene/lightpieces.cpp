@@ -209,6 +209,49 @@ double set_normals(const Mesh& mesh, LightBounds& b) {
   return std::clamp(most, 0.25, 1.0);
 }
 
+void include(const Vec3& p, LightBounds& b) { b.low = glm::min(b.low, p), b.high = glm::max(b.high, p); }
+
+void set_rectangle(const Rectangle& r, LightBounds& b) {
+  for (const Vec3& p : {r.corner, r.corner + r.x, r.corner + r.y, r.corner + r.x + r.y}) include(p, b);
+  b.axis = r.normal;
+}
+
+// Disk, sphere or cylinder; returns BoundedPiece::peak.
+double set_quadric(const Scene& scene, uint32_t id, LightBounds& b) {
+  const Shape& shape = scene.shapes[id];
+  const Mat4& m = shape.to_world;
+  const Vec3 x(m[0]), y(m[1]), z(m[2]), o(m[3]);
+  const float across = longest(x, y);
+  if (shape.kind == ShapeKind::disk) {
+    float pdf;
+    set_ball(o, across, ellipse_box(x, y), b);
+    b.axis = sample_area(scene, id, Vec2(0.5f), pdf).ng;
+    return 1;
+  }
+  b.cos_spread = -1;
+  if (shape.kind == ShapeKind::sphere) {
+    set_ball(o, across, Vec3(across), b);
+    return 0.25;
+  }
+  set_ball(o + 0.5f * z, across + 0.5f * std::sqrt(length2(z)), ellipse_box(x, y) + 0.5f * glm::abs(z), b);
+  return 1 / std::numbers::pi;
+}
+
+void include_triangle(const Mesh& mesh, uint32_t i, LightBounds& b) {
+  for (int k = 0; k < 3; ++k) include(mesh.positions[mesh.triangles[i][k]], b);
+}
+
+// Each one a piece.
+void add_triangles(Gatherer& g, uint32_t id, const Mesh& mesh, double watts) {
+  for (uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    LightBounds b;
+    b.cos_reach = 0;
+    include_triangle(mesh, i, b);
+    b.axis = mesh.faces[i].ng;
+    g.add(id, i, b, mesh.total_area > 0 ? watts * double(triangle_area(mesh, i)) / mesh.total_area : 0, false);
+  }
+}
+
 void add_area(Gatherer& g, uint32_t id, double watts) {
   const Light& light = g.scene.lights[id];
   const Shape& shape = g.scene.shapes[light.shape];
@@ -216,39 +259,15 @@ void add_area(Gatherer& g, uint32_t id, double watts) {
   b.cos_reach = 0;
   double peak = 1;
   if (light.rectangle.area > 0) {
-    const Rectangle& r = light.rectangle;
-    for (const Vec3& p : {r.corner, r.corner + r.x, r.corner + r.y, r.corner + r.x + r.y})
-      b.low = glm::min(b.low, p), b.high = glm::max(b.high, p);
-    b.axis = r.normal;
+    set_rectangle(light.rectangle, b);
   } else if (shape.kind == ShapeKind::mesh) {
     const Mesh& mesh = g.scene.meshes[shape.mesh];
-    const bool divided =
-        mesh.triangles.size() >= least_triangles && g.out.size() + mesh.triangles.size() <= most_pieces;
-    for (size_t i = 0; i < mesh.triangles.size(); ++i) {
-      if (divided) b = {}, b.cos_reach = 0;
-      for (int k = 0; k < 3; ++k) {
-        const Vec3& p = mesh.positions[mesh.triangles[i][k]];
-        b.low = glm::min(b.low, p), b.high = glm::max(b.high, p);
-      }
-      b.axis = mesh.faces[i].ng;
-      if (divided)
-        g.add(id, uint32_t(i), b,
-              mesh.total_area > 0 ? watts * double(triangle_area(mesh, uint32_t(i))) / mesh.total_area : 0, false);
-    }
-    if (divided) return;
+    const size_t count = mesh.triangles.size();
+    if (count >= least_triangles && g.out.size() + count <= most_pieces) return add_triangles(g, id, mesh, watts);
+    for (uint32_t i = 0; i < count; ++i) include_triangle(mesh, i, b);
     peak = set_normals(mesh, b);
   } else {
-    const Mat4& m = shape.to_world;
-    const Vec3 x(m[0]), y(m[1]), z(m[2]), o(m[3]);
-    const float across = longest(x, y);
-    float pdf;
-    if (shape.kind == ShapeKind::disk)
-      set_ball(o, across, ellipse_box(x, y), b), b.axis = sample_area(g.scene, light.shape, Vec2(0.5f), pdf).ng;
-    else if (shape.kind == ShapeKind::sphere)
-      set_ball(o, across, Vec3(across), b), b.cos_spread = -1, peak = 0.25;
-    else
-      set_ball(o + 0.5f * z, across + 0.5f * std::sqrt(length2(z)), ellipse_box(x, y) + 0.5f * glm::abs(z), b),
-          b.cos_spread = -1, peak = 1 / std::numbers::pi;
+    peak = set_quadric(g.scene, light.shape, b);
   }
   g.add(id, none, b, watts, false, peak);
 }

@@ -33,38 +33,28 @@ struct Builder {
   Vec3 middle(size_t i) const { return ajar::middle(pieces[i].bounds); }
 };
 
+// Bins of equal width along the longest axis of a range's middles.
 constexpr int bins = 16;
+struct Binning {
+  int axis = 0;
+  float low = 0, size = 0;
 
-// Where to divide a range: by the surface and orientation measure over bins along its longest axis; the middle where
-// that does not divide it.
-size_t divide(Builder& b, size_t from, size_t to) {
-  if (const uint32_t light = b.pieces[from].piece.light;
-      b.sky && b.pieces[from].infinite && b.pieces[to - 1].piece.light != light) {
-    while (b.pieces[from].piece.light == light) ++from;
-    return from;
-  }
+  int bin_of(const LightBounds& b) const { return std::clamp(int((middle(b)[axis] - low) / size * bins), 0, bins - 1); }
+};
+
+Binning bin_range(const Builder& b, size_t from, size_t to) {
   Vec3 low(infinity), high(-infinity);
   for (size_t i = from; i < to; ++i) low = glm::min(low, b.middle(i)), high = glm::max(high, b.middle(i));
   const Vec3 size = high - low;
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  const auto half = [&] {
-    const auto at = [&](size_t i) { return b.pieces.begin() + ptrdiff_t(i); };
-    const size_t middle = (from + to) / 2;
-    std::nth_element(at(from), at(middle), at(to), [&](const BoundedPiece& p, const BoundedPiece& q) {
-      const float x = p.bounds.low[axis] + p.bounds.high[axis], y = q.bounds.low[axis] + q.bounds.high[axis];
-      return x != y                           ? x < y
-             : p.piece.light != q.piece.light ? p.piece.light < q.piece.light
-                                              : p.piece.part < q.piece.part;
-    });
-    return middle;
-  };
-  if (!(size[axis] > 0)) return (from + to) / 2;
-  const auto bin = [&](size_t i) {
-    return std::clamp(int((b.middle(i)[axis] - low[axis]) / size[axis] * bins), 0, bins - 1);
-  };
+  return {axis, low[axis], size[axis]};
+}
+
+// The last bin below the best place to divide, by the surface and orientation measure; -1 where nothing divides.
+int best_bin(const Builder& b, size_t from, size_t to, const Binning& binning) {
   LightBounds of[bins], below, above[bins];
   for (size_t i = from; i < to; ++i) {
-    LightBounds& in = of[bin(i)];
+    LightBounds& in = of[binning.bin_of(b.pieces[i].bounds)];
     in = join(in, b.pieces[i].bounds);
   }
   for (int k = bins - 1; k > 0; --k) above[k - 1] = join(of[k], above[k]);
@@ -75,14 +65,37 @@ size_t divide(Builder& b, size_t from, size_t to) {
     const double c = cost(below) + cost(above[k]);
     if (below.weight > 0 && above[k].weight > 0 && c < least) least = c, best = k;
   }
-  if (best < 0) return half();
-  const auto middle = std::stable_partition(
-      b.pieces.begin() + ptrdiff_t(from), b.pieces.begin() + ptrdiff_t(to), [&](const BoundedPiece& p) {
-        const float m = 0.5f * (p.bounds.low[axis] + p.bounds.high[axis]);
-        return std::clamp(int((m - low[axis]) / size[axis] * bins), 0, bins - 1) <= best;
-      });
-  const size_t at = size_t(middle - b.pieces.begin());
-  return at > from && at < to ? at : half();
+  return best;
+}
+
+// The middle of a range, about which it is put in order along an axis.
+size_t halve(Builder& b, size_t from, size_t to, int axis) {
+  const auto at = [&](size_t i) { return b.pieces.begin() + ptrdiff_t(i); };
+  const size_t half = (from + to) / 2;
+  std::nth_element(at(from), at(half), at(to), [&](const BoundedPiece& p, const BoundedPiece& q) {
+    const float x = p.bounds.low[axis] + p.bounds.high[axis], y = q.bounds.low[axis] + q.bounds.high[axis];
+    return x != y                           ? x < y
+           : p.piece.light != q.piece.light ? p.piece.light < q.piece.light
+                                            : p.piece.part < q.piece.part;
+  });
+  return half;
+}
+
+// Where to divide a range, which is put in order for it: few infinite lights one from another, all else by bins, or in
+// the middle where these do not divide it.
+size_t divide(Builder& b, size_t from, size_t to) {
+  const auto at = [&](size_t i) { return b.pieces.begin() + ptrdiff_t(i); };
+  if (const uint32_t light = b.pieces[from].piece.light;
+      b.sky && b.pieces[from].infinite && b.pieces[to - 1].piece.light != light) {
+    while (b.pieces[from].piece.light == light) ++from;
+    return from;
+  }
+  const Binning binning = bin_range(b, from, to);
+  if (!(binning.size > 0)) return (from + to) / 2;
+  const int best = best_bin(b, from, to, binning);
+  const auto is_below = [&](const BoundedPiece& p) { return binning.bin_of(p.bounds) <= best; };
+  const size_t middle = size_t(std::stable_partition(at(from), at(to), is_below) - b.pieces.begin());
+  return middle > from && middle < to ? middle : halve(b, from, to, binning.axis);
 }
 
 // Cosine of the angle a - b, at least 0; both in [0, pi].
@@ -112,6 +125,50 @@ LightBounds build(Builder& b, uint32_t node, size_t from, size_t to, int depth) 
   }
   set_node(bounds, b.pieces[from].infinite, b.tree.nodes[node]);
   return bounds;
+}
+
+// Of lamps, then of infinite pieces, under one root where there are both; returns the root of the infinite ones.
+uint32_t build_nodes(Builder& b, size_t lamps) {
+  LightTree& t = b.tree;
+  const size_t all = b.pieces.size();
+  t.nodes.reserve(2 * all);
+  t.nodes.resize(1);
+  if (lamps == 0 || lamps == all) {
+    build(b, 0, 0, all, 0);
+    return 0;
+  }
+  constexpr uint32_t near = 1, sky = 2;
+  t.nodes.resize(3);
+  const LightBounds of_lamps = build(b, near, 0, lamps, 0), of_sky = build(b, sky, lamps, all, 0);
+  set_node(join(of_lamps, of_sky), false, t.nodes[0]);
+  t.nodes[0].left = near, t.nodes[0].first = 0, t.nodes[0].last = uint32_t(all);
+  return sky;
+}
+
+// Makes room for the places of all pieces of each light, those too that give nothing.
+void count_pieces(const std::vector<BoundedPiece>& pieces, size_t lights, LightTree& t) {
+  t.first_piece.assign(lights + 1, 0);
+  for (const BoundedPiece& p : pieces) ++t.first_piece[p.piece.light + 1];
+  for (size_t i = 0; i < lights; ++i) t.first_piece[i + 1] += t.first_piece[i];
+  t.place.assign(pieces.size(), none);
+}
+
+// How many lights the pieces from one on are of.
+size_t count_lights(const std::vector<BoundedPiece>& pieces, size_t from) {
+  size_t count = 0;
+  for (size_t i = from; i < pieces.size(); ++i)
+    count += i == from || pieces[i].piece.light != pieces[i - 1].piece.light ? 1 : 0;
+  return count;
+}
+
+// Pieces in the order of the nodes, what powers are before each, and where each light's are.
+void put_pieces(const std::vector<BoundedPiece>& pieces, LightTree& t) {
+  for (size_t i = 0; i < pieces.size(); ++i) {
+    const LightPiece& p = pieces[i].piece;
+    t.pieces.push_back(p);
+    t.power_before.push_back(t.power_before.back() + pieces[i].watts);
+    t.place[t.first_piece[p.light] + (p.part == none ? 0 : p.part)] = uint32_t(i);
+  }
 }
 
 // The nodes that hold the infinite pieces between them, divided by power until there are enough.
@@ -224,38 +281,16 @@ LightTree make_light_tree(const Scene& scene, LightChoice choice) {
   t.infinity_scale = float(1 / (double(scene.radius) * double(scene.radius)));
   make_tilings(scene, t);
   std::vector<BoundedPiece> pieces = light_pieces(scene, t);
-  t.first_piece.assign(scene.lights.size() + 1, 0);
-  for (const BoundedPiece& p : pieces) ++t.first_piece[p.piece.light + 1];
-  for (size_t i = 0; i < scene.lights.size(); ++i) t.first_piece[i + 1] += t.first_piece[i];
-  t.place.assign(pieces.size(), none);
+  count_pieces(pieces, scene.lights.size(), t);
   std::erase_if(pieces, [](const BoundedPiece& p) { return !(p.watts > 0); });
   t.power_before = {0};
   if (pieces.empty()) return t;
   const auto finite = std::stable_partition(pieces.begin(), pieces.end(), [](auto& p) { return !p.infinite; });
   const size_t lamps = size_t(finite - pieces.begin());
-  t.nodes.reserve(2 * pieces.size());
-  t.nodes.resize(1);
+  Builder b{t, pieces, count_lights(pieces, lamps) <= most_sky};
+  const uint32_t sky = build_nodes(b, lamps);
+  put_pieces(pieces, t);
   t.region.assign(pieces.size(), none);
-  size_t far = 0;  // lights
-  for (size_t i = lamps; i < pieces.size(); ++i)
-    far += i == lamps || pieces[i].piece.light != pieces[i - 1].piece.light ? 1 : 0;
-  Builder b{t, pieces, far <= most_sky};
-  uint32_t sky = 0;
-  if (lamps == 0 || lamps == pieces.size()) {
-    build(b, 0, 0, pieces.size(), 0);
-  } else {
-    t.nodes.resize(3);
-    t.nodes[0].left = 1;
-    const LightBounds first = build(b, 1, 0, lamps, 0);
-    set_node(join(first, build(b, sky = 2, lamps, pieces.size(), 0)), false, t.nodes[0]);
-    t.nodes[0].first = 0, t.nodes[0].last = uint32_t(pieces.size());
-  }
-  for (size_t i = 0; i < pieces.size(); ++i) {
-    const LightPiece& p = pieces[i].piece;
-    t.pieces.push_back(p);
-    t.power_before.push_back(t.power_before.back() + pieces[i].watts);
-    t.place[t.first_piece[p.light] + (p.part == none ? 0 : p.part)] = uint32_t(i);
-  }
   if (lamps < pieces.size()) set_regions(t, sky);
   if (lamps == 0 && b.sky) set_sky(t);
   return t;
