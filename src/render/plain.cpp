@@ -55,6 +55,17 @@ std::vector<uint32_t> spread_squares(const Film& film, uint32_t count) {
   return out;
 }
 
+std::vector<uint32_t> squares_to_look_at(const Film& film) {
+  const uint32_t all = square_count(film), count = std::clamp(all / 16, least_squares, most_squares);
+  return spread_squares(film, std::min(count, all));
+}
+
+// Whether path tracing is looked at before the next pass.
+bool is_look_due(const Film& film, const Plain& plain) {
+  const bool due = std::has_single_bit(film.passes) && film.passes >= first_look && film.passes <= last_look;
+  return due && !plain.settled && film.chunks == 0 && plain.passes != film.passes;
+}
+
 uint32_t pixel_of(const Film& film, uint32_t first, uint32_t k) {
   return first + k / plain_side * uint32_t(film.width) + k % plain_side;
 }
@@ -88,6 +99,22 @@ void trace_to(uint32_t passes, const Job& job, const Film& film, const std::vect
   }
 }
 
+// Path tracing of some squares for as long as the guided integrator took, about.
+void trace_as_long(const Job& job, const std::vector<uint32_t>& squares, bool merges, std::vector<Scratch>& scratches,
+                   RenderState& state) {
+  Plain& plain = state.plain;
+  const Film& film = state.film;
+  Job without = plainly(job);
+  without.seed = hash(job.seed, 0x91a1);  // what one looks at is in no image
+  trace_to(film.passes, without, film, squares, scratches, plain);
+  const Counters& n = state.stats.counters;
+  const double cost =
+      ray_cost(merges) * double(ray_count(n)) / double(n.camera_paths) * samples_of_pass(film, state.adaptive);
+  const double samples = double(plain.seen.passes) * double(plain.seen.sum.size());
+  const double pace = std::clamp(cost * samples / (path_ray * double(plain.rays)), 1.0, fastest);
+  trace_to(uint32_t(pace * film.passes / 2) * 2, without, film, squares, scratches, plain);
+}
+
 PassHalves halves_of(const Film& film, const std::vector<uint32_t>& squares) {
   PassHalves out;
   out.passes = film.passes;
@@ -110,6 +137,14 @@ void decide(double error, double deviation, double guided, double samples, uint3
   plain.ratio = guided > 0 ? most / guided : 0;
   plain.taken = plain.ratio > 0 && plain.ratio < little(passes) && most * samples < tame;
   plain.settled = plain.taken || passes == last_look || least > too_much(passes) * guided || least * samples > wild;
+}
+
+// The same from what a look saw.
+void judge(const PlainLook& look, bool merges, uint32_t passes, Plain& plain) {
+  const double samples = plain.seen.passes, guided = merges ? blur * (look.guided + look.bias) : look.guided;
+  // Twice the samples would have shown what was missed before.
+  plain.missed = std::max(missed_by_plain(look, merges) * samples, 0.5 * plain.missed);
+  decide(look.plain + plain.missed / samples, look.deviation, guided, samples, passes, plain);
 }
 
 PassHalves operator-(PassHalves a, const PassHalves& b) {
@@ -183,26 +218,11 @@ void try_plain(const Job& job, const RenderOptions& options, std::vector<Scratch
   const Film& film = state.film;
   if (film.passes >= plain.with_merging.film.passes) plain.with_merging = {};
   if (plain.guided.film.passes > 0) return doubt_plain(merges, state);
-  const bool due = std::has_single_bit(film.passes) && film.passes >= first_look && film.passes <= last_look;
-  if (plain.settled || film.chunks > 0 || !due || plain.passes == film.passes) return;
-  const uint32_t all = square_count(film), count = std::clamp(all / 16, least_squares, most_squares);
-  const std::vector<uint32_t> squares = spread_squares(film, std::min(count, all));
+  if (!is_look_due(film, plain)) return;
+  const std::vector<uint32_t> squares = squares_to_look_at(film);
   if (squares.empty()) return;
-  Job without = plainly(job);
-  without.seed = hash(job.seed, 0x91a1);  // what one looks at is in no image
-  trace_to(film.passes, without, film, squares, scratches, plain);
-  const Counters& n = state.stats.counters;
-  const double cost =
-      ray_cost(merges) * double(ray_count(n)) / double(n.camera_paths) * samples_of_pass(film, state.adaptive);
-  const double samples = double(plain.seen.passes) * double(plain.seen.sum.size());
-  const double pace = std::clamp(cost * samples / (path_ray * double(plain.rays)), 1.0, fastest);
-  trace_to(uint32_t(pace * film.passes / 2) * 2, without, film, squares, scratches, plain);
-  const PlainLook look = compare_halves(halves_of(film, squares), plain.seen);
-  const double passes = plain.seen.passes;
-  const double guided = merges ? blur * (look.guided + look.bias) : look.guided;
-  plain.missed =
-      std::max(missed_by_plain(look, merges) * passes, 0.5 * plain.missed);  // twice the samples would have shown it
-  decide(look.plain + plain.missed / passes, look.deviation, guided, passes, film.passes, plain);
+  trace_as_long(job, squares, merges, scratches, state);
+  judge(compare_halves(halves_of(film, squares), plain.seen), merges, film.passes, plain);
   if (plain.taken && merges) return leave_out_merging(!is_over(options, state.stats, late), state);
   if (plain.settled) plain.seen = {};
   if (plain.taken && film.splats) plain.guided = set_aside(state), plain.adaptive = state.adaptive;
