@@ -195,6 +195,14 @@ uint64_t sum_of(const std::vector<T>& v, uint64_t sum) {
   return checksum(v.data(), v.size() * sizeof(T), sum);
 }
 
+void read_probes(Reader& r, CellTable& table) {
+  table.probes.resize(r.count(sizeof(Probe)));
+  for (Probe& p : table.probes) {
+    r.value(p.p), r.value(p.n), r.value(p.axis);
+    r.require(is_finite(p.p) && is_finite(p.n) && p.axis < 3);
+  }
+}
+
 void read_portals(Reader& r, CellTable& table, std::vector<double>& lines) {
   table.portals.resize(r.count(sizeof(Portal)));
   r.require(table.portals.size() <= most_portals);
@@ -221,6 +229,21 @@ void read_compartments(Reader& r, CellTable& table) {
     const CellCut& c = table.cuts[i];
     r.require(std::isfinite(c.at) && c.axis >= 0 && c.axis < 3 && leads_on(c.below, int32_t(i)) &&
               leads_on(c.above, int32_t(i)));
+  }
+}
+
+// The table is filled with them, and their marks set that they are divided.
+void read_cells(Reader& r, Fields& fields) {
+  fields.cells.resize(r.count(sizeof(CellKey)));
+  for (uint32_t i = 0; i < fields.cells.size(); ++i) {
+    Cell& c = fields.cells[i];
+    char divided = 0;
+    r.value(c.key), r.value(divided), frame_members(r, c.frame), r.value(c.seen), r.value(c.region);
+    r.require(is_cell_key(c.key) && cell_of(fields.table, c.key) == none && is_sound(c.frame) && is_amount(c.seen) &&
+              c.region < most_regions);
+    c.center = middle_of(fields.table, c.key);
+    insert(fields.table, c.key, i);
+    if (divided) set_divided(fields.table, c.key);
   }
 }
 
@@ -260,24 +283,10 @@ void read(Reader& r, Fields& fields) {
   r.value(fields.generation), r.value(fields.table.origin), r.value(fields.table.width), r.value(fields.table.first);
   r.require(is_finite(fields.table.origin) && is_amount(fields.table.width) &&
             is_amount(float(1 << most_cell_levels) / fields.table.width));
-  fields.table.probes.resize(r.count(sizeof(Probe)));
-  for (Probe& p : fields.table.probes) {
-    r.value(p.p), r.value(p.n), r.value(p.axis);
-    r.require(is_finite(p.p) && is_finite(p.n) && p.axis < 3);
-  }
+  read_probes(r, fields.table);
   read_compartments(r, fields.table);
   read_portals(r, fields.table, fields.lines);
-  fields.cells.resize(r.count(sizeof(CellKey)));
-  for (uint32_t i = 0; i < fields.cells.size(); ++i) {
-    Cell& c = fields.cells[i];
-    char divided = 0;
-    r.value(c.key), r.value(divided), frame_members(r, c.frame), r.value(c.seen), r.value(c.region);
-    r.require(is_cell_key(c.key) && cell_of(fields.table, c.key) == none && is_sound(c.frame) && is_amount(c.seen) &&
-              c.region < most_regions);
-    c.center = middle_of(fields.table, c.key);
-    insert(fields.table, c.key, i);
-    if (divided) set_divided(fields.table, c.key);
-  }
+  read_cells(r, fields);
   const size_t portals = fields.table.portals.size();
   read(r, fields.structure, fields.cells.size(), portals, fields.q);
   read(r, fields.structure, fields.cells.size(), portals, fields.w);
