@@ -55,7 +55,7 @@ std::vector<Choice> choices_of(const std::vector<const LightStore*>& stores, con
   }
   const Vec3 size = high - low;
   const float radius = std::max({size.x, size.y, size.z, 1e-30f}) / 2;
-  for (Choice& c : out) c.order = place_in_order(c.store->vertex(c.at), (low + high) / 2.0f, radius);
+  for (Choice& c : out) c.order = morton_key(c.store->vertex(c.at), (low + high) / 2.0f, radius);
   std::stable_sort(out.begin(), out.end(), [](const Choice& a, const Choice& b) { return a.order < b.order; });
   return out;
 }
@@ -79,7 +79,7 @@ double find_threshold(std::vector<double> values, double count) {
   return count > 0 ? sum / count : 0;
 }
 
-uint64_t place_in_order(const Vertex& v, const Vec3& center, float radius) {
+uint64_t morton_key(const Vertex& v, const Vec3& center, float radius) {
   const Vec3 q = glm::clamp((v.p - center) / (2 * radius) + 0.5f, 0.0f, 1.0f) * 1023.0f;
   const Vec3 n = v.guide.frame.n, a = glm::abs(n);
   const int axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
@@ -87,7 +87,7 @@ uint64_t place_in_order(const Vertex& v, const Vec3& center, float radius) {
   return range << 32 | spread_bits(uint64_t(q.x)) << 2 | spread_bits(uint64_t(q.y)) << 1 | spread_bits(uint64_t(q.z));
 }
 
-void keep(LightStore& out, const std::vector<const LightStore*>& stores, double count, float u) {
+void subsample(LightStore& out, const std::vector<const LightStore*>& stores, double count, float u) {
   clear(out);
   for (const LightStore* store : stores) out.paths += store->paths;
   const std::vector<Choice> choices = choices_of(stores, totals_of(stores));

@@ -24,7 +24,7 @@ bool passes(const Guide& guide) { return guide.bsdf.has_delta && !guide.bsdf.has
 End end_of(const Fields& fields, const Vertex& v, const Vec3& d, Side side, const Passed& passed = {}) {
   End e;
   e.cosine = std::abs(glm::dot(v.ng, d));
-  e.q = v.shines;
+  e.q = v.emitted;
   if (passes(v.guide)) e.q += passed.q, e.w = passed.w;
   if (v.guide.cell == none || !connectable(v.guide)) return e;
   e.cell = v.guide.cell;
@@ -125,7 +125,7 @@ Passed passed_by(const Fields& fields, const Subpath& subpath, int i, Side side,
 // after it.
 float brought_by(const Subpath& subpath, int i, Side side, float next) {
   const Vertex& v = subpath[i];
-  float sum = v.shines;
+  float sum = v.emitted;
   if (connectable(v.guide)) sum += scatters(v.guide) * v.received;
   const float here = luminance(v.beta);
   if (i + 1 < subpath.n && here > 0) sum += next * luminance(subpath[i + 1].beta) / here;

@@ -121,7 +121,7 @@ bool step(const Scene& scene, const Accel& accel, const WalkOptions& options, Su
   }
   v.delta = false, v.infinite = false;
   v.seen = walk.side == Side::camera && (subpath.n == 2 || (before.seen && before.delta));
-  v.shines = 0, v.received = 0, v.next_events = 1;
+  v.emitted = 0, v.received = 0, v.next_events = 1;
   v.shape = hit.shape, v.instance = hit.instance;
   if (subpath.n == 2 && walk.side == Side::camera) v.own = raster_factor(scene.camera, before.p, v.p) * cosine;
   make_guide(scene, options.fields, walk.side, surface, -walk.d, v.guide);
@@ -138,7 +138,7 @@ bool scatter(const WalkOptions& options, Sampler& sampler, Subpath& subpath, Wal
   walk.beta = v.beta;
   if (!choose_direction(v.guide, mode, options, subpath.n, sampler, walk.beta, walk.survival, walk.promise, s))
     return false;
-  walk.sure = walk.sure && s.goes_on == 1;
+  walk.sure = walk.sure && s.survival_probability == 1;
   v.delta = s.delta;
   walk.o = offset(v.p, v.ng, v.error, s.wi);
   walk.d = s.wi;

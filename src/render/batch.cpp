@@ -33,7 +33,7 @@ void fill_pools(const Job& job, const Film& film, uint32_t from, Batch& batch) {
   std::vector<std::vector<const LightStore*>> stores(batch.pools.size());
   for (size_t i = 0; i < batch.halves.size(); ++i) stores[i % stores.size()].push_back(&batch.halves[i].store);
   parallel_for(uint32_t(stores.size()), [&](uint32_t k) {
-    keep(batch.pools[k], stores[k], pooled_lights, number_of(job, film, ~(from + k)));
+    subsample(batch.pools[k], stores[k], pooled_lights, number_of(job, film, ~(from + k)));
     finish(batch.pools[k]);
   });
 }

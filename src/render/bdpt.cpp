@@ -37,7 +37,7 @@ void join_surface(Work& work, const Surface& surface) {
   if (job.scene->shapes[surface.shape].light == none) return;
   if (join_hit(*job.scene, job.walk.fields, camera, surface, c)) {
     add(work, c, 0, camera.n);
-    if (work.sample.teaches) camera[camera.n - 1].shines = luminance(c.arrives) * weigh(work, c);
+    if (work.sample.teaches) camera[camera.n - 1].emitted = luminance(c.arrives) * weigh(work, c);
   }
   charge_join(work.scratch, 0, camera.n);
 }
@@ -172,7 +172,7 @@ void note_beyond(const Work& work, const First& first, const Walk& walk) {
 }
 
 // What teaches goes on, and takes its numbers.
-bool goes_on(const Job& job, Sample& sample, Subpath& camera, Walk& walk) {
+bool survives_roulette(const Job& job, Sample& sample, Subpath& camera, Walk& walk) {
   if (!sample.teaches) return is_worth_it(job.walk, sample.sampler, camera, walk);
   sample.sampler.skip();
   return true;
@@ -282,7 +282,7 @@ void trace_bdpt(const Job& job, Sample& sample, Scratch& scratch) {
       break;
     }
     join_surface(work, surface);
-    if (scratch.pool && !goes_on(job, sample, camera, walk)) break;
+    if (scratch.pool && !survives_roulette(job, sample, camera, walk)) break;
     join_all(work);
     note_first(work, first);
   } while (camera.n <= job.walk.max_edges && scatter(job.walk, sample.sampler, camera, walk));

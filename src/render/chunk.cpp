@@ -125,7 +125,7 @@ void trace_light_halves(const Job& job, Film& film, uint32_t chunk, Scratch& scr
       sample.path += k * film.pixels();  // numbers of its own
       halves.samples[i].splat |= trace_half(job, sample, recorded, scratch);
     }
-  keep(halves.store, {&scratch.traced}, job.kept, number_of(job, film, chunk));
+  subsample(halves.store, {&scratch.traced}, job.kept, number_of(job, film, chunk));
 }
 
 void trace_camera_halves(const Job& job, Film& film, OfPool of, Scratch& scratch) {

@@ -46,8 +46,8 @@ void follow(const Job& job, Sample& sample, Scratch& scratch, Walk walk, bool ga
       return;
     }
     const Vertex& v = camera[camera.n - 1];
-    const bool shines = scene.shapes[surface.shape].light != none;
-    if (shines && shows) add(camera.n, v.beta * emitted(scene, surface, v.guide.wo));
+    const bool emits = scene.shapes[surface.shape].light != none;
+    if (emits && shows) add(camera.n, v.beta * emitted(scene, surface, v.guide.wo));
     if (camera.n > job.walk.max_edges) return;
     if (!connectable(v.guide)) continue;
     join_merged(job, sample, scratch);

@@ -113,7 +113,7 @@ std::vector<Group> trace_groups(const Job& job, uint64_t stream, uint32_t pass, 
 void put_in_order(const Scene& scene, LightStore& store) {
   std::vector<std::pair<uint64_t, LightStore::Place>> keyed;
   for (const LightStore::Place& at : store.places)
-    keyed.emplace_back(place_in_order(store.vertex(at), scene.center, scene.radius), at);
+    keyed.emplace_back(morton_key(store.vertex(at), scene.center, scene.radius), at);
   std::stable_sort(keyed.begin(), keyed.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   for (size_t i = 0; i < keyed.size(); ++i) store.places[i] = keyed[i].second;
 }

@@ -39,7 +39,7 @@ TEST(Pool, WhatIsKeptStandsForAllPlaces) {
   const Room room(1, true);
   const LightStore all = room.store(64);
   ASSERT_GT(all.places.size(), 80u);
-  expect_stands_for(all, 40, [&](LightStore& some, float u) { keep(some, {&all}, 40, u); });
+  expect_stands_for(all, 40, [&](LightStore& some, float u) { subsample(some, {&all}, 40, u); });
 }
 
 // In two steps, by parts.
@@ -50,8 +50,8 @@ TEST(Pool, WhatIsKeptOfWhatWasKeptStandsForAllPlaces) {
   append(together, all), append(together, all);
   expect_stands_for(together, 40, [&](LightStore& some, float u) {
     const float other = float(hash(uint64_t(double(u) * pools), 3) % pools) / pools;
-    keep(first, {&all}, 80, u), keep(second, {&all}, 80, u);
-    keep(some, {&first, &second}, 40, other);
+    subsample(first, {&all}, 80, u), subsample(second, {&all}, 80, u);
+    subsample(some, {&first, &second}, 40, other);
   });
 }
 
@@ -63,7 +63,7 @@ TEST(Pool, KeepsWhatIsWorthMuch) {
   double worth = 0, kept = 0, mean = 0;
   for (const LightStore::Place& at : all.places) worth += double(at.worth) / double(all.places.size());
   for (int i = 0; i < pools; ++i) {
-    keep(some, {&all}, 20, mark(i));
+    subsample(some, {&all}, 20, mark(i));
     for (const LightStore::Place& at : some.places)
       kept += double(at.worth), mean += double(at.counts) * double(at.worth);
   }
@@ -78,13 +78,13 @@ TEST(Pool, KeepsAllWhereThereAreFew) {
   const LightStore all = room.store(16), empty = room.store(0);
   LightStore some;
   for (const double count : {double(all.places.size()), 1e6}) {
-    keep(some, {&empty, &all, &empty}, count, 0.7f);
+    subsample(some, {&empty, &all, &empty}, count, 0.7f);
     ASSERT_EQ(some.places.size(), all.places.size());
     for (const LightStore::Place& at : some.places) EXPECT_EQ(at.counts, 1);
   }
-  keep(some, {&empty}, 10, 0.5f);
+  subsample(some, {&empty}, 10, 0.5f);
   EXPECT_TRUE(some.places.empty());
-  keep(some, {}, 10, 0.5f);
+  subsample(some, {}, 10, 0.5f);
   EXPECT_EQ(some.paths, 0u);
 }
 
@@ -92,7 +92,7 @@ TEST(Pool, KeepsWhatJoinsRead) {
   const Room room(1, true);
   const LightStore all = room.store(64), more = room.store(32);
   LightStore some;
-  keep(some, {&all, &more}, 60, 0.3f);
+  subsample(some, {&all, &more}, 60, 0.3f);
   EXPECT_LT(some.vertices.size(), all.vertices.size());
   std::map<Key, const LightStore::Place*> known;
   LightStore whole;

@@ -53,7 +53,7 @@ TEST(LightStore, StandsForAllPlacesOfWhichSomeCountMore) {
   const Room room(1, true);
   const LightStore all = room.store(64);
   LightStore some;
-  keep(some, {&all}, 0.4 * double(all.places.size()), 0.5f);
+  subsample(some, {&all}, 0.4 * double(all.places.size()), 0.5f);
   finish(some);
   ASSERT_GT(std::count_if(some.places.begin(), some.places.end(), [](const auto& p) { return p.counts > 1.5f; }), 4);
   EXPECT_GT(expect_unbiased(some, room.cameras(12)), 8);

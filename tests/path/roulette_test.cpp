@@ -21,7 +21,7 @@ Life after(int edges, float albedo) {
   float promised = 0;
   for (int n = 2; n < edges + 2; ++n) {
     const Rgb arrives(float(life.weight)), leaves(float(life.weight) * albedo);
-    const double q = keep(options, guide, n, arrives, leaves, promised);
+    const double q = survival_probability(options, guide, n, arrives, leaves, promised);
     life.weight *= double(albedo) / q;
     life.chance *= q;
   }
@@ -73,7 +73,7 @@ TEST(Roulette, FieldsThatLieDoNotMakeFireflies) {
   options.fields = &fields;
   float weight = 1, chance = 1, promised = 1;
   for (int n = 2; n < 12; ++n) {
-    const float q = keep(options, guide, n, Rgb(weight), Rgb(weight), promised);
+    const float q = survival_probability(options, guide, n, Rgb(weight), Rgb(weight), promised);
     weight /= q, chance *= q;
     EXPECT_LE(weight, options.window * 1.001f) << n;
   }
@@ -88,12 +88,12 @@ TEST(Roulette, MoreGoOnWhereThatPays) {
   WalkOptions options;
   options.fields = &fields;
   float promised = 16 * promise(guide, Rgb(1)).beyond;
-  const float q = keep(options, guide, 2, Rgb(1), Rgb(1), promised);
+  const float q = survival_probability(options, guide, 2, Rgb(1), Rgb(1), promised);
   EXPECT_NEAR(q, options.window / 16, 1e-5);
   options.goes_on = 2;
-  EXPECT_NEAR(keep(options, guide, 2, Rgb(1), Rgb(1), promised), 2 * q, 1e-5);
+  EXPECT_NEAR(survival_probability(options, guide, 2, Rgb(1), Rgb(1), promised), 2 * q, 1e-5);
   guide.side = Side::light;
-  EXPECT_NEAR(keep(options, guide, 2, Rgb(1), Rgb(1), promised), q, 1e-5);
+  EXPECT_NEAR(survival_probability(options, guide, 2, Rgb(1), Rgb(1), promised), q, 1e-5);
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ inline void trace_subpath(const Scene& scene, const Accel& accel, const WalkOpti
     }
     if (side == Side::camera && scene.shapes[surface.shape].light != none &&
         join_hit(scene, options.fields, out, surface, c))
-      out[out.n - 1].shines = luminance(c.arrives);
+      out[out.n - 1].emitted = luminance(c.arrives);
     if (!scatter(options, sampler, out, walk)) return;
   }
 }

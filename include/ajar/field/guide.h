@@ -45,7 +45,7 @@ struct GuideSample {
   float pdf_reverse = 0;
   float eta = 1;
   bool delta = false;
-  float goes_on = 1;  ///< probability with which roulette let it go on
+  float survival_probability = 1;  ///< in Russian roulette
 };
 
 /// Resolves the material at the surface for a viewer in direction wo, and finds the cell. fields may be null.
@@ -83,8 +83,8 @@ GuideEval evaluate(const Guide& guide, const Vec3& wi, Mode mode);
 GuideEval evaluate_bsdf(const Guide& guide, const Vec3& wi, Mode mode);
 float with_field(const Guide& guide, const Vec3& wi, float bsdf_pdf);
 /// Samples wi, delta events among it, from the mixture of field and bsdf: u_lobe and u in [0, 1), u_lobe read only
-/// where chooses says so. The weight is divided by the density, and may be black; goes_on is not set. False where
-/// nothing is scattered: then out is not to be read.
+/// where chooses says so. The weight is divided by the density, and may be black; survival_probability is not set.
+/// False where nothing is scattered: then out is not to be read.
 bool sample(const Guide& guide, float u_lobe, const Vec2& u, Mode mode, GuideSample& out);
 
 }  // namespace ajar

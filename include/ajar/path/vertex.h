@@ -27,7 +27,7 @@ struct Vertex {
   bool infinite = false;    ///< vertex 0: a direction rather than a place
   uint8_t next_events = 1;  ///< rays to lights from here, also where none was sent by chance; camera subpaths
   float received = 0;       ///< luminance of what next-event estimation (the lens) brought here, per area
-  float shines = 0;         ///< luminance of the light that the subpath ran into here, times its MIS weight
+  float emitted = 0;        ///< luminance of the light that the subpath ran into here, times its MIS weight
   uint32_t shape = none;
   uint32_t instance = none;
   Guide guide;

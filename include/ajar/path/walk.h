@@ -102,8 +102,8 @@ inline float surest(int vertices) { return std::max(0.95f, 1 - 1 / float(vertice
 /// that decides, against what was expected at its start (promised: set here the first time that it is known), but it
 /// does not raise the throughput to more than the window's times that of the start: what the field knows nothing of, or
 /// lies about, would come back as rare and bright samples. Elsewhere the throughput decides.
-inline float keep(const WalkOptions& options, const Guide& guide, int vertices, const Rgb& beta, const Rgb& survival,
-                  float& promised) {
+inline float survival_probability(const WalkOptions& options, const Guide& guide, int vertices, const Rgb& beta,
+                                  const Rgb& survival, float& promised) {
   if (options.fields) {
     const Promise p = promise(guide, beta);
     if (!(promised > 0)) promised = p.all;
@@ -127,11 +127,11 @@ inline bool choose_direction(const Guide& guide, Mode mode, const WalkOptions& o
   if (!sample(guide, u_lobe, sampler.next2(), mode, out) || is_black(out.weight)) return false;
   beta *= out.weight;
   survival *= out.weight * (mode == Mode::radiance ? sqr(out.eta) : 1.0f);
-  out.goes_on = keep(options, guide, vertices, arrived, survival, promised);
-  if (out.goes_on == 1) return true;
-  if (!(sampler.at(lobe_and_roulette).y < out.goes_on)) return false;
-  beta /= out.goes_on;
-  survival /= out.goes_on;
+  out.survival_probability = survival_probability(options, guide, vertices, arrived, survival, promised);
+  if (out.survival_probability == 1) return true;
+  if (!(sampler.at(lobe_and_roulette).y < out.survival_probability)) return false;
+  beta /= out.survival_probability;
+  survival /= out.survival_probability;
   return true;
 }
 
