@@ -108,7 +108,7 @@ Scene with_texel(float value) {
   const std::string path = scratch("texture.exr");
   Picture picture{4, 4, {"R", "G", "B"}, std::vector<float>(48, 0.5f)};
   picture.pixels[20] = value;
-  write_exr(path, picture, {}, false);
+  write_exr(path, picture);
   Scene scene = usual();
   try {
     scene.images.push_back(load_image(path));

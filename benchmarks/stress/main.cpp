@@ -105,7 +105,7 @@ void save_picture(const Arguments& a, const Case& c, const std::string& integrat
   const Picture p{o.width, o.height, {"R", "G", "B"}, std::vector<float>(e.mean.begin(), e.mean.end())};
   std::string name = fmt::format("{} {} {}.exr", c.group, c.name, integrator);
   std::replace(name.begin(), name.end(), '/', '-');
-  write_exr(a.pictures + "/" + name, p, {}, false);
+  write_exr(a.pictures + "/" + name, p);
 }
 
 // By a process of their own: OpenEXR begins threads, and a process that has any cannot be forked any more.

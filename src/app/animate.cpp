@@ -147,7 +147,8 @@ void write_frame(Work& w, int frame, const Stage& stage, Run& run, const RenderS
   record["frame"] = frame;
   record["coherent"] = w.arguments.coherent;
   write_text(fs::path(run.out_path).replace_extension(".json").string(), record_of(record));
-  write_exr(run.out_path, image, data, w.arguments.half);  // last: a frame is done when its image is there
+  write_exr(run.out_path, image, data,
+            w.arguments.half ? PixelType::half : PixelType::float32);  // last: a frame is done when its image is there
 }
 
 // What its record tells.

@@ -217,7 +217,9 @@ void write_record(const RenderArguments& a, const Run& run, const RenderState& s
 
 void write_image(const RenderArguments& a, const Scene& scene, const Accel& accel, Run& run, const RenderState& state) {
   Stopwatch watch;
-  if (!is_png(a.out)) write_exr(a.out, image_of(a, scene, accel, state), metadata(run, state), a.half);
+  if (!is_png(a.out))
+    write_exr(a.out, image_of(a, scene, accel, state), metadata(run, state),
+              a.half ? PixelType::half : PixelType::float32);
   if (is_png(a.out)) write_png(a.out, develop(state.film));
   watch.add_to(run.write_seconds, run.write_cpu);
   write_record(a, run, state);

@@ -59,14 +59,15 @@ void encode_and_write(const std::string& path, const char* format, const OIIO::I
 bool is_wide(const std::string& name) { return name.starts_with("Variance.") || name.starts_with("P."); }
 
 /// Per channel: half unless a finite value would overflow, or most would be too small for all its bits.
-std::vector<OIIO::TypeDesc> channel_formats(const Picture& picture, bool half) {
+std::vector<OIIO::TypeDesc> channel_formats(const Picture& picture, PixelType type) {
   const size_t channels = picture.names.size();
+  std::vector<OIIO::TypeDesc> formats(channels, OIIO::TypeDesc::FLOAT);
+  if (type == PixelType::float32) return formats;
   std::vector<float> largest(channels, 0);
-  for (size_t i = 0; half && i < picture.pixels.size(); ++i)
+  for (size_t i = 0; i < picture.pixels.size(); ++i)
     if (std::isfinite(picture.pixels[i]))
       largest[i % channels] = std::max(largest[i % channels], std::abs(picture.pixels[i]));
-  std::vector<OIIO::TypeDesc> formats(channels, OIIO::TypeDesc::FLOAT);
-  for (size_t c = 0; half && c < channels; ++c)
+  for (size_t c = 0; c < channels; ++c)
     if (!is_wide(picture.names[c]) && (largest[c] == 0 || (largest[c] >= half_dim && largest[c] <= half_max)))
       formats[c] = OIIO::TypeDesc::HALF;
   return formats;
@@ -123,7 +124,7 @@ PictureThreads::~PictureThreads() {
   if (before_ > 0) OIIO::attribute("threads", before_), OIIO::attribute("exr_threads", exr_before_);
 }
 
-void write_exr(const std::string& path, const Picture& picture, const Metadata& metadata, bool half) {
+void write_exr(const std::string& path, const Picture& picture, const Metadata& metadata, PixelType type) {
   require_sound(path, picture);
   OIIO::ImageSpec spec(picture.width, picture.height, picture.channels(), OIIO::TypeDesc::FLOAT);
   spec.channelnames = picture.names;
@@ -133,7 +134,7 @@ void write_exr(const std::string& path, const Picture& picture, const Metadata& 
   };
   spec.alpha_channel = index("A");
   spec.z_channel = index("Z");
-  const auto formats = channel_formats(picture, half);
+  const auto formats = channel_formats(picture, type);
   spec.set_format(formats[0]);
   if (std::find(formats.begin(), formats.end(),
                 formats[0] == OIIO::TypeDesc::HALF ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::HALF) != formats.end())

@@ -56,8 +56,8 @@ void write_pyramid(const Pyramid& pyramid, const Film& film, const std::string& 
   clear_layers(folder);
   for (const auto& [st, layer] : pyramid.layers) {
     const std::string base = fmt::format("{}/{}{}t{}", folder, st.first < 0 ? 'm' : 's', std::abs(st.first), st.second);
-    write_exr(base + ".exr", average(film, layer.weighted, st.second == 1), {}, false);
-    write_exr(base + "-raw.exr", average(film, layer.raw, st.second == 1), {}, false);
+    write_exr(base + ".exr", average(film, layer.weighted, st.second == 1));
+    write_exr(base + "-raw.exr", average(film, layer.raw, st.second == 1));
   }
 }
 

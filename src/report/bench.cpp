@@ -58,7 +58,7 @@ std::optional<Json> find_run(const Bench& bench, const Stand& stand, const Metho
 void write_image(const Bench& bench, const Stand& stand, const std::string& name, const Picture& image) {
   const fs::path folder = bench.options.folder / "images" / stand.scene->name;
   make_folder(folder.string());
-  write_exr((folder / (name + ".exr")).string(), image, {{"ajar:version", bench.options.version}}, false);
+  write_exr((folder / (name + ".exr")).string(), image, {{"ajar:version", bench.options.version}});
 }
 
 /// Follows a racer, with the share of all that is to be done; false to stop.

@@ -92,7 +92,7 @@ bool render_batch(const LoadedScene& loaded, const RenderOptions& options, const
                          {"ajar:spp", batch.spp},
                          {"ajar:seconds", state.stats.seconds},
                          {"ajar:cpu_seconds", state.stats.cpu_seconds}};
-  write_exr(path.string(), batch.image, data, false);
+  write_exr(path.string(), batch.image, data);
   part.add(batch, data);
   return true;
 }
@@ -262,7 +262,7 @@ std::optional<Reference> make_reference(const Suite& suite, const BenchScene& sc
   const Combined combined = combine(parts[0].batches, parts[1].batches);
   require_light(combined.image, stem.string() + ".exr");
   const Json json = record(scene, *loaded.scene, options, parts, agreement, combined);
-  write_exr(stem.string() + ".exr", combined.image, {{"ajar:version", options.version}}, true);
+  write_exr(stem.string() + ".exr", combined.image, {{"ajar:version", options.version}}, PixelType::half);
   write_text(stem.string() + ".json", text_of(json, 2) + "\n");
   std::error_code ignored;
   fs::remove_all(folder, ignored);

@@ -26,9 +26,9 @@ struct Compare : testing::Test {
     b = (folder / "b.exr").string();
     variance = (folder / "variance.exr").string();
     diff = (folder / "diff.png").string();
-    write_exr(a, grey(8, 6, 1.5f), {}, false);
-    write_exr(b, grey(8, 6, 1), {}, false);
-    write_exr(variance, grey(8, 6, 0.01f), {}, false);
+    write_exr(a, grey(8, 6, 1.5f));
+    write_exr(b, grey(8, 6, 1));
+    write_exr(variance, grey(8, 6, 0.01f));
   }
   void TearDown() override { std::filesystem::remove_all(folder); }
 
@@ -72,17 +72,17 @@ TEST_F(Compare, VarianceFileAddsTheTest) {
   const auto json = nlohmann::json::parse(run({a, b, "--variance", variance}));
   EXPECT_NEAR(json["z_mean"].get<double>(), 5, 1e-3);
   EXPECT_LT(json["z_p"].get<double>(), 1e-6);
-  write_exr(variance, grey(8, 6, -0.01f), {}, false);
+  write_exr(variance, grey(8, 6, -0.01f));
   EXPECT_NE(error_of({a, b, "--variance", variance}).find("variance.exr: channel Variance.R of pixel (0, 0)"),
             std::string::npos);
-  write_exr(variance, grey(8, 5, 0.01f), {}, false);
+  write_exr(variance, grey(8, 5, 0.01f));
   EXPECT_NE(error_of({a, b, "--variance", variance}).find("variance.exr: "), std::string::npos);
 }
 
 TEST_F(Compare, CropComparesAPart) {
   Picture picture = grey(8, 6, 1);
   picture.pixels[size_t(3 * (2 * 8 + 5))] = std::numeric_limits<float>::quiet_NaN();
-  write_exr(a, picture, {}, false);
+  write_exr(a, picture);
   EXPECT_NE(error_of({a, b}).find("a.exr: channel R of pixel (5, 2) is nan"), std::string::npos) << error_of({a, b});
   EXPECT_EQ(nlohmann::json::parse(run({a, b, "--crop", "0", "0", "5", "6"}))["mse"], 0);
   EXPECT_NE(error_of({a, b, "--crop", "0", "0", "9", "6"}).find("a.exr: a crop of 9x6"), std::string::npos);
@@ -106,7 +106,7 @@ TEST_F(Compare, DiffOverwritesNothing) {
 }
 
 TEST_F(Compare, ErrorsNameBothSizesOrTheFile) {
-  write_exr(b, grey(7, 6, 1), {}, false);
+  write_exr(b, grey(7, 6, 1));
   const std::string error = error_of({a, b});
   for (const char* part : {"a.exr", "8x6", "b.exr", "7x6", "--crop"})
     EXPECT_NE(error.find(part), std::string::npos) << error;

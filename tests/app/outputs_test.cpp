@@ -75,9 +75,9 @@ TEST_F(Outputs, WrongOnesAreErrorsBeforeTheRender) {
 
 TEST_F(Outputs, AReferenceThatIsNoneIsNamedBeforeTheLogBegins) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  write_exr("nan.exr", {8, 8, {"R", "G", "B"}, std::vector<float>(192, nan)}, {}, false);
-  write_exr("xyz.exr", {8, 8, {"X", "Y", "Z"}, std::vector<float>(192, 1)}, {}, false);
-  write_exr("grey.exr", {8, 8, {"Y"}, std::vector<float>(64, 1)}, {}, false);
+  write_exr("nan.exr", {8, 8, {"R", "G", "B"}, std::vector<float>(192, nan)});
+  write_exr("xyz.exr", {8, 8, {"X", "Y", "Z"}, std::vector<float>(192, 1)});
+  write_exr("grey.exr", {8, 8, {"Y"}, std::vector<float>(64, 1)});
   EXPECT_NE(error_of({"--reference", "nan.exr", "--log", "log"}).find("nan.exr: channel R of pixel (0, 0)"),
             std::string::npos);
   EXPECT_NE(error_of({"--reference", "xyz.exr", "--log", "log"}).find("xyz.exr: channels R, G, B"), std::string::npos);

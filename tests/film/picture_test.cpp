@@ -62,7 +62,7 @@ Picture noise(int width, int height, const std::vector<std::string>& names, doub
 
 TEST_F(PictureFile, FloatExrComesBackExactly) {
   const Picture out = noise(37, 23, {"R", "G", "B", "Albedo.R", "N.X", "P.Z", "Variance.G"});
-  write_exr(file("a.exr"), out, {}, false);
+  write_exr(file("a.exr"), out);
   const Picture in = read_picture(file("a.exr"));
   EXPECT_EQ(in.width, 37);
   EXPECT_EQ(in.height, 23);
@@ -74,13 +74,13 @@ TEST_F(PictureFile, FloatExrComesBackExactly) {
 
 TEST_F(PictureFile, ChannelsNamedLikeAlphaAndDepthStayApart) {
   const Picture out = noise(5, 4, {"Z", "A", "B", "G", "R"});
-  write_exr(file("a.exr"), out, {}, false);
+  write_exr(file("a.exr"), out);
   EXPECT_EQ(select(read_picture(file("a.exr")), out.names).pixels, out.pixels);
 }
 
 TEST_F(PictureFile, HalfRoundsToElevenBits) {
   const Picture out = noise(64, 64, {"R", "G", "B"}, 3);
-  write_exr(file("a.exr"), out, {}, true);
+  write_exr(file("a.exr"), out, {}, PixelType::half);
   const Picture in = select(read_picture(file("a.exr")), out.names);
   size_t changed = 0;
   for (size_t i = 0; i < out.pixels.size(); ++i) {
@@ -93,7 +93,7 @@ TEST_F(PictureFile, HalfRoundsToElevenBits) {
 TEST_F(PictureFile, HalfNeverOverflows) {
   Picture out = noise(8, 8, {"R", "G", "B"}, 1);
   out.pixels[3 * 5 + 1] = 1e8f;
-  write_exr(file("a.exr"), out, {}, true);
+  write_exr(file("a.exr"), out, {}, PixelType::half);
   const Picture in = select(read_picture(file("a.exr")), out.names);
   EXPECT_EQ(in.pixels[3 * 5 + 1], 1e8f);
   for (size_t i = 0; i < 64; ++i) EXPECT_EQ(in.pixels[3 * i + 1], out.pixels[3 * i + 1]) << "green is float";
@@ -109,7 +109,7 @@ TEST_F(PictureFile, HalfKeepsWhatIsDim) {
     for (size_t i = c; i < out.pixels.size(); i += names.size()) out.pixels[i] *= factor;
   };
   channel(1, 1e-9f), channel(5, 0);
-  write_exr(file("a.exr"), out, {}, true);
+  write_exr(file("a.exr"), out, {}, PixelType::half);
   const Picture in = select(read_picture(file("a.exr")), names);
   for (const size_t c : {1, 3, 4})
     for (size_t i = c; i < out.pixels.size(); i += names.size()) EXPECT_EQ(in.pixels[i], out.pixels[i]) << names[c];
@@ -122,8 +122,8 @@ TEST_F(PictureFile, NanAndInfinitySurvive) {
   Picture out = noise(4, 1, {"R", "G", "B"}, 1);
   out.pixels[1] = std::numeric_limits<float>::quiet_NaN();
   out.pixels[5] = -infinity;
-  for (const bool half : {false, true}) {
-    write_exr(file("a.exr"), out, {}, half);
+  for (const PixelType type : {PixelType::float32, PixelType::half}) {
+    write_exr(file("a.exr"), out, {}, type);
     const Picture in = read_picture(file("a.exr"));
     EXPECT_TRUE(std::isnan(in.pixels[1]));
     EXPECT_EQ(in.pixels[5], -infinity);
@@ -136,7 +136,7 @@ TEST_F(PictureFile, MetadataComesBack) {
                         {"ajar:seconds", 0.1},
                         {"ajar:options", "a \"b\"\n{c}"},
                         {"ajar:huge", 1e300}};
-  write_exr(file("a.exr"), noise(2, 2, {"R", "G", "B"}), out, false);
+  write_exr(file("a.exr"), noise(2, 2, {"R", "G", "B"}), out);
   const Metadata in = read_metadata(file("a.exr"));
   for (const auto& [name, value] : out) {
     ASSERT_TRUE(in.contains(name)) << name;
@@ -146,7 +146,7 @@ TEST_F(PictureFile, MetadataComesBack) {
 
 TEST_F(PictureFile, SameBytesTwice) {
   const Picture picture = noise(100, 70, {"R", "G", "B"});
-  for (const char* name : {"a.exr", "b.exr"}) write_exr(file(name), picture, {{"ajar:seed", 1.0}}, false);
+  for (const char* name : {"a.exr", "b.exr"}) write_exr(file(name), picture, {{"ajar:seed", 1.0}});
   EXPECT_EQ(read_bytes(file("a.exr")), read_bytes(file("b.exr")));
   const Metadata metadata = read_metadata(file("a.exr"));
   EXPECT_TRUE(!metadata.contains("DateTime") || metadata.at("DateTime") == Metadata::mapped_type(""))
@@ -174,7 +174,7 @@ TEST_F(PictureFile, ExistingFileIsReplacedAndLinksAreFollowed) {
   write_text(file("link.txt"), "new");
   EXPECT_EQ(read_bytes(file("a.txt")), "new");
   EXPECT_TRUE(fs::is_symlink(file("link.txt")));
-  write_exr(file("a.txt"), noise(2, 2, {"R"}), {}, false);  // the name does not choose the format
+  write_exr(file("a.txt"), noise(2, 2, {"R"}));  // the name does not choose the format
   EXPECT_EQ(read_picture(file("a.txt")).width, 2);
   EXPECT_EQ(file_count(), 2u);
 }
@@ -182,7 +182,7 @@ TEST_F(PictureFile, ExistingFileIsReplacedAndLinksAreFollowed) {
 TEST_F(PictureFile, WritesThatFailSayWhyAndLeaveNothing) {
   const Picture picture = noise(4, 4, {"R", "G", "B"});
   write_text(file("file"), "x");
-  const auto exr = [&](const std::string& path) { return error_of([&] { write_exr(path, picture, {}, false); }); };
+  const auto exr = [&](const std::string& path) { return error_of([&] { write_exr(path, picture); }); };
   EXPECT_NE(exr(file("file/a.exr")).find("file/a.exr: cannot be written"), std::string::npos);
   EXPECT_NE(exr(folder.string()).find("name a file"), std::string::npos);
   EXPECT_NE(exr(file(std::string(300, 'a'))).find("shorter name"), std::string::npos);
@@ -202,7 +202,7 @@ TEST_F(PictureFile, FullDiskLeavesTheOldFile) {
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);
   const rlimit small{20000, old.rlim_max};
   setrlimit(RLIMIT_FSIZE, &small);
-  const std::string error = error_of([&] { write_exr(file("a.exr"), noise(100, 100, {"R", "G", "B"}), {}, false); });
+  const std::string error = error_of([&] { write_exr(file("a.exr"), noise(100, 100, {"R", "G", "B"})); });
   setrlimit(RLIMIT_FSIZE, &old);
   std::signal(SIGXFSZ, handler);
   EXPECT_NE(error.find("free some space"), std::string::npos) << error;
@@ -228,18 +228,15 @@ TEST_F(PictureFile, PipesAreWrittenToNotReplaced) {
 TEST_F(PictureFile, UnsoundPicturesAreErrors) {
   Picture picture = noise(4, 4, {"R", "G", "B"});
   picture.pixels.pop_back();
-  EXPECT_NE(error_of([&] { write_exr(file("a.exr"), picture, {}, false); }), "");
+  EXPECT_NE(error_of([&] { write_exr(file("a.exr"), picture); }), "");
   EXPECT_NE(error_of([&] { write_png(file("a.png"), picture); }), "");
-  EXPECT_NE(error_of([&] { write_exr(file("a.exr"), Picture{}, {}, false); }), "");
-  EXPECT_NE(error_of([&] {
-              write_exr(file("a.exr"), noise(4, 4, {"R", "R"}), {}, false);
-            }).find("twice"),
-            std::string::npos);
+  EXPECT_NE(error_of([&] { write_exr(file("a.exr"), Picture{}); }), "");
+  EXPECT_NE(error_of([&] { write_exr(file("a.exr"), noise(4, 4, {"R", "R"})); }).find("twice"), std::string::npos);
   EXPECT_EQ(file_count(), 0u);
 }
 
 TEST_F(PictureFile, DamagedFilesAreErrors) {
-  write_exr(file("a.exr"), noise(100, 100, {"R", "G", "B"}), {}, false);
+  write_exr(file("a.exr"), noise(100, 100, {"R", "G", "B"}));
   const std::string bytes = read_bytes(file("a.exr"));
   for (const size_t size : {size_t(0), size_t(3), size_t(200), size_t(1000), bytes.size() / 2, bytes.size() - 1}) {
     write_bytes(file("b.exr"), bytes.substr(0, size));
@@ -336,9 +333,9 @@ TEST_F(PictureFile, BytesThatSayTheyAreLinearAre) {
 }
 
 TEST_F(PictureFile, GreyOnesHaveThreeEqualChannels) {
-  write_exr(file("a.exr"), Picture{1, 1, {"Y"}, {0.25f}}, {}, false);
+  write_exr(file("a.exr"), Picture{1, 1, {"Y"}, {0.25f}});
   EXPECT_EQ(read_rgb(file("a.exr")).pixels, (std::vector<float>{0.25f, 0.25f, 0.25f}));
-  write_exr(file("b.exr"), Picture{1, 1, {"X", "Y", "Z"}, {1, 2, 3}}, {}, false);
+  write_exr(file("b.exr"), Picture{1, 1, {"X", "Y", "Z"}, {1, 2, 3}});
   EXPECT_NE(error_of([&] { read_rgb(file("b.exr")); }).find("b.exr: channels R, G, B are missing"), std::string::npos);
 }
 

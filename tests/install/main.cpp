@@ -19,7 +19,7 @@ int main(int argc, char** argv) try {
   ajar::RenderState state = ajar::start_render(scene, options);
   ajar::render(scene, accel, options, state, [](const ajar::RenderState&) { return true; });
   const ajar::Picture picture = ajar::develop(state.film);
-  ajar::write_exr(argv[2], picture, {{"guest:spp", 4.0}}, false);
+  ajar::write_exr(argv[2], picture, {{"guest:spp", 4.0}});
   const ajar::Metrics same = ajar::compare(ajar::read_picture(argv[2]), picture);
   std::printf("%dx%d, mean %g, mse against itself %g\n", picture.width, picture.height, same.mean, same.mse);
   return same.mean > 0 && same.mse == 0 && state.stats.rejected == 0 ? 0 : 1;

@@ -83,10 +83,10 @@ void write_sheet(const std::string& path) {
 
 void write_props(const std::string& folder) {
   write_png(folder + "/albedo.png", speckled(1, 0, 1));
-  write_exr(folder + "/bump.exr", speckled(4, 0, 1), {}, false);
-  write_exr(folder + "/normal.exr", normals(), {}, false);
-  write_exr(folder + "/lamp.exr", uneven(8, 4), {}, false);
-  write_exr(folder + "/sky.exr", sky(), {}, false);
+  write_exr(folder + "/bump.exr", speckled(4, 0, 1));
+  write_exr(folder + "/normal.exr", normals());
+  write_exr(folder + "/lamp.exr", uneven(8, 4));
+  write_exr(folder + "/sky.exr", sky());
   write_ply(folder + "/globe.ply", kit::globe(Vec3(0), 1, 8));
   write_ply(folder + "/bent.ply", kit::globe(Vec3(0), 1, 7, 0.3f));
   write_sheet(folder + "/sheet.obj");

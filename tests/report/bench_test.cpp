@@ -226,7 +226,7 @@ TEST_F(Bench, AnotherReferenceIsRefused) {
   const fs::path stem = reference_stem(suite(small()).scenes[0], 16, 12, options.references);
   Picture image = read_picture(stem.string() + ".exr");
   image.pixels[0] += 1;
-  write_exr(stem.string() + ".exr", image, {}, true);
+  write_exr(stem.string() + ".exr", image, {}, PixelType::half);
   const fs::path shown = options.folder / "images" / small()["scenes"][0]["name"] / "reference.exr";
   const std::string before = kit::bytes_of(shown);
   EXPECT_NE(error_of(small()).find("p-seed0.json: was measured against another reference"), std::string::npos)
@@ -327,7 +327,7 @@ TEST_F(Bench, ScenesAreLoadedBeforeAnythingIsMade) {
   EXPECT_NE(error.find("dor"), std::string::npos) << error;
   EXPECT_FALSE(fs::exists(options.folder));
   json = small();
-  write_exr((folder / "r.exr").string(), {2, 2, {"R", "G", "B"}, std::vector<float>(12, 1)}, {}, true);
+  write_exr((folder / "r.exr").string(), {2, 2, {"R", "G", "B"}, std::vector<float>(12, 1)}, {}, PixelType::half);
   json["scenes"][0]["reference"] = {{"image", "r.exr"}};
   EXPECT_NE(error_of(json).find("r.exr: has 2x2 pixels, the scene renders 16x12"), std::string::npos);
   EXPECT_FALSE(fs::exists(options.folder));

@@ -87,8 +87,8 @@ TEST(Metrics, MseAgreesWithOpenImageIO) {
   std::filesystem::create_directories(folder);
   const std::string a = (folder / "a.exr").string(), b = (folder / "b.exr").string();
   const Picture image = pattern(64, 48, 0.6), reference = pattern(64, 48);
-  write_exr(a, image, {}, false);
-  write_exr(b, reference, {}, false);
+  write_exr(a, image);
+  write_exr(b, reference);
   const double idiff = printed_rms(fmt::format("idiff '{}' '{}'", a, b));
   const double oiiotool = printed_rms(fmt::format("oiiotool --diff '{}' '{}'", a, b));
   std::filesystem::remove_all(folder);

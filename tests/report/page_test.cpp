@@ -186,7 +186,7 @@ TEST(Pack, ReducedKeepsTheMeanAndTheEdge) {
 }
 
 TEST_F(Page, LargeStrategyImagesAreReduced) {
-  write_exr((folder / "techniques/room/bdpt/s0t2.exr").string(), test::pattern(640, 360), {}, false);
+  write_exr((folder / "techniques/room/bdpt/s0t2.exr").string(), test::pattern(640, 360));
   const json files = json::parse(between(page(), "id=\"files\">", "</script>"));
   EXPECT_EQ(files["techniques/room/bdpt/s0t2.exr"]["width"], 160);
   EXPECT_EQ(files["techniques/room/bdpt/s0t2.exr"]["height"], 90);
@@ -204,7 +204,7 @@ TEST_F(Page, MissingImageIsNamedAndNothingIsWritten) {
 }
 
 TEST_F(Page, WrongImagesAreNamed) {
-  write_exr((folder / "images/room/path.exr").string(), test::pattern(8, 9), {}, false);
+  write_exr((folder / "images/room/path.exr").string(), test::pattern(8, 9));
   EXPECT_NE(error().find("images/room/path.exr: has 8x9 pixels, its reference images/room/reference.exr has 96x54"),
             std::string::npos)
       << error();

@@ -104,7 +104,7 @@ json summary(const Kind& kind, double cpu) {
 
 std::string save(const std::filesystem::path& folder, const std::string& name, const Picture& picture) {
   std::filesystem::create_directories((folder / name).parent_path());
-  write_exr((folder / name).string(), picture, {}, false);
+  write_exr((folder / name).string(), picture);
   return name;
 }
 

@@ -37,11 +37,14 @@ class PictureThreads {
   int before_ = 0, exr_before_ = 0;
 };
 
-/// Writes channels and metadata ("ajar:seed" ..., names as given) to an OpenEXR file, ZIP-compressed, float or half;
-/// the same arguments give the same bytes. half: a channel that holds a finite value beyond the range of half (65504)
-/// stays float, so that nothing turns into infinity; so does one whose largest value is below 1/16, so that what is dim
-/// keeps its bits, and "Variance." and "P." do. Throws Error; a failure leaves no file, and an older one as it was.
-void write_exr(const std::string& path, const Picture& picture, const Metadata& metadata, bool half);
+/// Of the channels of an OpenEXR file.
+enum class PixelType { half, float32 };
+/// Writes channels and metadata ("ajar:seed" ..., names as given) to an OpenEXR file, ZIP-compressed; the same
+/// arguments give the same bytes. half: a channel that holds a finite value beyond the range of half (65504) stays
+/// float, so that nothing turns into infinity; so does one whose largest value is below 1/16, so that what is dim keeps
+/// its bits, and "Variance." and "P." do. Throws Error; a failure leaves no file, and an older one as it was.
+void write_exr(const std::string& path, const Picture& picture, const Metadata& metadata = {},
+               PixelType type = PixelType::float32);
 /// Writes the first three channels (or, of fewer, the first as grey) to an 8-bit PNG by the fixed tone curve of
 /// docs/notation.md; exposure in stops. Throws Error, also where such a channel holds NaN.
 void write_png(const std::string& path, const Picture& picture, float exposure = 0);
