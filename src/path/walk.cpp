@@ -26,6 +26,32 @@ double sum_of_last(const WalkOptions& options, const Subpath& subpath, const Wal
   return extend(share, r, last.sum);  // (R2)
 }
 
+// The new vertex that a walk found from the one before, on either side, but for what its merges count for.
+void set_vertex(const Walk& walk, const Surface& surface, const Vertex& before, Vertex& v) {
+  const float cosine = std::abs(glm::dot(surface.ng, walk.d));
+  v.p = surface.p, v.error = surface.error, v.ng = surface.ng;
+  v.distance2 = walk.planar ? 1 : length2(v.p - before.p);
+  v.beta = walk.beta;
+  v.own = walk.pdf * cosine / v.distance2;
+  v.back = walk.planar ? 1 : (before.ng == Vec3(0) ? 1 : std::abs(glm::dot(before.ng, walk.d))) / v.distance2;
+  v.sum = walk.sum;
+  v.delta = false, v.infinite = false, v.seen = false;
+  v.emitted = 0, v.received = 0, v.next_events = 1;
+}
+
+// What the camera's vertices have beside: whether the lens sees them, for the first the density of its pixel, and for
+// those beyond the first that is merged how much less their merges count.
+void set_camera_vertex(const Camera& camera, const Merging& merging, bool first, const Vertex& before, Walk& walk,
+                       Vertex& v) {
+  v.seen = first || (before.seen && before.delta);
+  if (first) {
+    v.own = raster_factor(camera, before.p, v.p) * std::abs(glm::dot(v.ng, walk.d));
+    return;
+  }
+  walk.straight &= before.delta;
+  if (!walk.straight) v.merge *= float(merging.inner);
+}
+
 }  // namespace
 
 Counters& Counters::operator+=(const Counters& o) {
@@ -99,33 +125,20 @@ bool step(const Scene& scene, const Accel& accel, const WalkOptions& options, Su
           Surface& surface) {
   walk.sum = sum_of_last(options, subpath, walk);
   const CameraRay ray{walk.o, walk.d, walk.t_min, walk.t_max};
-  const bool looks = subpath.n == 1 && walk.side == Side::camera;
+  const bool first = subpath.n == 1, by_camera = walk.side == Side::camera;
   Hit hit;
-  walk.escaped =
-      !(looks ? first_seen(scene, accel, ray, hit) : accel.intersect(ray.o, ray.d, ray.t_min, ray.t_max, hit));
+  walk.escaped = !(first && by_camera ? first_seen(scene, accel, ray, hit)
+                                      : accel.intersect(ray.o, ray.d, ray.t_min, ray.t_max, hit));
   if (walk.escaped) return false;
   surface = make_surface(scene, hit, walk.o, walk.d);
   Vertex& v = subpath.add();
   const Vertex& before = subpath[subpath.n - 2];
-  const float cosine = std::abs(glm::dot(surface.ng, walk.d));
-  v.p = surface.p, v.error = surface.error, v.ng = surface.ng;
-  v.distance2 = walk.planar ? 1 : length2(v.p - before.p);
-  v.beta = walk.beta;
-  v.own = walk.pdf * cosine / v.distance2;
-  v.back = walk.planar ? 1 : (before.ng == Vec3(0) ? 1 : std::abs(glm::dot(before.ng, walk.d))) / v.distance2;
-  v.sum = walk.sum;
-  v.merge = merge_density(options.merging, v.p);
-  if (walk.side == Side::camera && subpath.n > 2) {
-    walk.straight &= before.delta;
-    if (!walk.straight) v.merge *= float(options.merging.inner);
-  }
-  v.delta = false, v.infinite = false;
-  v.seen = walk.side == Side::camera && (subpath.n == 2 || (before.seen && before.delta));
-  v.emitted = 0, v.received = 0, v.next_events = 1;
+  set_vertex(walk, surface, before, v);
   v.shape = hit.shape, v.instance = hit.instance;
-  if (subpath.n == 2 && walk.side == Side::camera) v.own = raster_factor(scene.camera, before.p, v.p) * cosine;
+  v.merge = merge_density(options.merging, v.p);
+  if (by_camera) set_camera_vertex(scene.camera, options.merging, first, before, walk, v);
   make_guide(scene, options.fields, walk.side, surface, -walk.d, v.guide);
-  if (subpath.n == 2 && walk.side == Side::light)
+  if (first && !by_camera)
     walk.first_share =
         direct_share(scene, v, before.point, -walk.d, v.distance2, {walk.start.pdf_position, walk.start.pdf_direction});
   return true;
