@@ -9,25 +9,25 @@ namespace {
 constexpr double evenly = 0.2;
 
 struct Totals {
-  double worth = 0, flux = 0, places = 0;
+  double worth = 0, flux = 0, entries = 0;
 };
 
 Totals totals_of(const std::vector<const LightStore*>& stores) {
   Totals t;
   for (const LightStore* store : stores)
-    for (const LightStore::Place& at : store->places) {
+    for (const LightStore::Entry& at : store->entries) {
       const double counts = double(at.counts);
-      t.worth += counts * double(at.worth), t.flux += counts * double(at.flux), t.places += counts;
+      t.worth += counts * double(at.worth), t.flux += counts * double(at.flux), t.entries += counts;
     }
   if (!(t.worth < infinity)) t.worth = 0;
   if (!(t.flux < infinity)) t.flux = 0;
   return t;
 }
 
-// What a place is chosen by: its share of all.
-double value_of(const LightStore::Place& at, const Totals& all) {
+// What an entry is chosen by: its share of all.
+double value_of(const LightStore::Entry& at, const Totals& all) {
   const double flux = all.flux > 0 ? by_flux : 0, worth = all.worth > 0 ? 1 - evenly - flux : 0;
-  double value = (1 - flux - worth) / all.places;
+  double value = (1 - flux - worth) / all.entries;
   if (flux > 0) value += flux * double(at.flux) / all.flux;
   if (worth > 0) value += worth * double(at.worth) / all.worth;
   return value * double(at.counts);
@@ -37,7 +37,7 @@ struct Choice {
   uint64_t order = 0;
   double value = 0;
   const LightStore* store = nullptr;
-  LightStore::Place at;  // its path counted through all stores
+  LightStore::Entry at;  // its path counted through all stores
 };
 
 std::vector<Choice> choices_of(const std::vector<const LightStore*>& stores, const Totals& all) {
@@ -45,7 +45,7 @@ std::vector<Choice> choices_of(const std::vector<const LightStore*>& stores, con
   uint32_t paths = 0;
   Vec3 low(infinity), high(-infinity);
   for (const LightStore* store : stores) {
-    for (LightStore::Place at : store->places) {
+    for (LightStore::Entry at : store->entries) {
       const Vec3 p = store->vertex(at).p;
       low = glm::min(low, p), high = glm::max(high, p);
       out.push_back({0, value_of(at, all), store, at});
@@ -98,11 +98,11 @@ void subsample(LightStore& out, const std::vector<const LightStore*>& stores, do
   for (const Choice& c : choices) {
     const double chance = least > 0 ? std::min(c.value / least, 1.0) : 1;
     sum += chance;
-    if (!(double(out.places.size()) + double(u) < sum)) continue;
+    if (!(double(out.entries.size()) + double(u) < sum)) continue;
     out.vertices.push_back(c.store->vertex(c.at));
-    out.places.push_back(c.at);
-    out.places.back().vertex = uint32_t(out.vertices.size() - 1);
-    out.places.back().counts /= float(chance);
+    out.entries.push_back(c.at);
+    out.entries.back().vertex = uint32_t(out.vertices.size() - 1);
+    out.entries.back().counts /= float(chance);
   }
 }
 

@@ -17,7 +17,7 @@ float flux_of(const Vertex& v) {
   return luminance(v.beta) * inv_pi * std::max(luminance(albedo(v.guide.bsdf, v.guide.wo_local)), 0.02f);
 }
 
-void put(LightStore::Block& b, uint32_t i, const Vertex& v, const LightStore::Place& at, float near) {
+void put(LightStore::Block& b, uint32_t i, const Vertex& v, const LightStore::Entry& at, float near) {
   const Vec3 n = v.guide.frame.n;
   b.x[i] = v.p.x, b.y[i] = v.p.y, b.z[i] = v.p.z;
   b.nx[i] = n.x, b.ny[i] = n.y, b.nz[i] = n.z;
@@ -57,7 +57,7 @@ Seer seer_of(const Joiner& j) {
 
 }  // namespace
 
-void clear(LightStore& store) { store.vertices.clear(), store.places.clear(), store.blocks.clear(), store.paths = 0; }
+void clear(LightStore& store) { store.vertices.clear(), store.entries.clear(), store.blocks.clear(), store.paths = 0; }
 
 void add(LightStore& store, const Subpath& light, double share) {
   ++store.paths;
@@ -67,28 +67,28 @@ void add(LightStore& store, const Subpath& light, double share) {
     const float flux = flux_of(v);
     if (!(flux > 0)) continue;
     const LightEnd end = light_end(light.first(s), share);
-    store.places.push_back({.vertex = uint32_t(store.vertices.size()),
-                            .s = s,
-                            .delta_before = end.delta_before,
-                            .only_joined = only_joined(light.first(s)),
-                            .own_before = end.own_before,
-                            .share = share,
-                            .region = region_of(v.guide),
-                            .path = store.paths - 1,
-                            .flux = flux,
-                            .worth = promise(v.guide, v.beta).beyond});
+    store.entries.push_back({.vertex = uint32_t(store.vertices.size()),
+                             .s = s,
+                             .delta_before = end.delta_before,
+                             .only_joined = only_joined(light.first(s)),
+                             .own_before = end.own_before,
+                             .share = share,
+                             .region = region_of(v.guide),
+                             .path = store.paths - 1,
+                             .flux = flux,
+                             .worth = promise(v.guide, v.beta).beyond});
     store.vertices.push_back(v);
   }
 }
 
 namespace {
-// near: of a place, by its number.
+// near: of an entry, by its number.
 template <class Near>
 void make_blocks(LightStore& store, const Near& near, bool in_order) {
-  const uint32_t all = uint32_t(store.places.size()), n = (all + LightStore::width - 1) / LightStore::width;
+  const uint32_t all = uint32_t(store.entries.size()), n = (all + LightStore::width - 1) / LightStore::width;
   store.blocks.assign(n, {});
   for (uint32_t i = 0; i < all; ++i) {
-    const LightStore::Place& at = store.places[i];
+    const LightStore::Entry& at = store.entries[i];
     if (in_order)
       put(store.blocks[i / LightStore::width], i % LightStore::width, store.vertex(at), at, near(i));
     else
@@ -99,7 +99,7 @@ void make_blocks(LightStore& store, const Near& near, bool in_order) {
 
 void finish(LightStore& store) {
   make_blocks(
-      store, [&](uint32_t i) { return float(near_of(store.vertex(store.places[i]))); }, false);
+      store, [&](uint32_t i) { return float(near_of(store.vertex(store.entries[i]))); }, false);
 }
 
 void finish(LightStore& store, std::span<const float> near) {
@@ -108,11 +108,11 @@ void finish(LightStore& store, std::span<const float> near) {
 }
 
 void append(LightStore& store, const LightStore& more) {
-  for (LightStore::Place at : more.places) {
+  for (LightStore::Entry at : more.entries) {
     const Vertex& v = more.vertex(at);
     at.vertex = uint32_t(store.vertices.size()), at.path += store.paths;
     store.vertices.push_back(v);
-    store.places.push_back(at);
+    store.entries.push_back(at);
   }
   store.paths += more.paths;
 }
@@ -195,8 +195,8 @@ void choose(const LightStore& store, const Joiner& joiner, Sampler& sampler, Exp
       if (j + 1 < blocks && !(at < sums.back())) break;
       const uint32_t i = find(sums, values, at);
       if (!(values[i] > 0)) continue;
-      const LightStore::Place& place = store.places[i * n + block];
-      out.push_back({&place, share * place.counts * sum / (values[i] * count)});
+      const LightStore::Entry& entry = store.entries[i * n + block];
+      out.push_back({&entry, share * entry.counts * sum / (values[i] * count)});
     }
     before += sums.back();
   }
@@ -242,8 +242,8 @@ void choose_some(const LightStore& store, const Expectation& expected, int count
     if (!(most > 0)) continue;
     for (uint32_t i = 0; i < LightStore::width; ++i) {
       if (!(numbers[i] < chances[i])) continue;
-      const LightStore::Place& place = store.places[block * LightStore::width + i];
-      out.push_back({&place, place.counts / (std::min(chances[i], 1.0f) * float(store.paths))});
+      const LightStore::Entry& entry = store.entries[block * LightStore::width + i];
+      out.push_back({&entry, entry.counts / (std::min(chances[i], 1.0f) * float(store.paths))});
     }
   }
 }

@@ -117,7 +117,7 @@ Joiner joiner_of(const Job& job, const Subpath& camera, float worth) {
 // Vertices that were chosen lie all over the pool: memory is asked for them at once, up to the first lobe.
 void ask_for(const LightStore& store, const std::vector<StoreChoice>& choices) {
   for (const StoreChoice& choice : choices) {
-    const char* const at = reinterpret_cast<const char*>(&store.vertex(*choice.place));
+    const char* const at = reinterpret_cast<const char*>(&store.vertex(*choice.entry));
     for (size_t i = 0; i < offsetof(Vertex, guide.bsdf.lobes[1]); i += 64) __builtin_prefetch(at + i);
   }
 }
@@ -132,7 +132,7 @@ void join_stored(Work& work, float worth) {
   choose(store, joiner_of(job, camera, worth), work.sample.sampler, work.scratch.expected, choices);
   ask_for(store, choices);
   for (const StoreChoice& choice : choices) {
-    const LightStore::Place& at = *choice.place;
+    const LightStore::Entry& at = *choice.entry;
     Candidate c;
     if (join_vertices(store.end(at), camera.first(camera.n), job.walk.light_paths, c)) {
       c.value *= choice.weight;

@@ -55,11 +55,11 @@ void trace_lights(const Job& job, Sampler sampler, uint32_t path, Scratch& scrat
       out.may_light.push_back(can_light(*job.scene, surface, light[light.n - 1].guide));
     }
   }
-  const size_t before = scratch.traced.places.size();
+  const size_t before = scratch.traced.entries.size();
   add(scratch.traced, light, walk.first_share);
-  std::vector<LightStore::Place>& places = scratch.traced.places;
-  const auto is_none = [&](const LightStore::Place& at) { return !out.may_light[size_t(at.s)] && !at.only_joined; };
-  places.erase(std::remove_if(places.begin() + ptrdiff_t(before), places.end(), is_none), places.end());
+  std::vector<LightStore::Entry>& entries = scratch.traced.entries;
+  const auto is_none = [&](const LightStore::Entry& at) { return !out.may_light[size_t(at.s)] && !at.only_joined; };
+  entries.erase(std::remove_if(entries.begin() + ptrdiff_t(before), entries.end(), is_none), entries.end());
 }
 
 // Lights that a guided pass keeps, about.
@@ -68,12 +68,12 @@ constexpr uint32_t kept_lights = 1024;
 constexpr uint32_t grain = 16;  // light subpaths of a group
 
 // What arrives there, whatever is made of it.
-double flux_at(const LightStore& store, const LightStore::Place& at) {
+double flux_at(const LightStore& store, const LightStore::Entry& at) {
   return double(std::max(luminance(store.vertex(at).beta), 0.0f));
 }
 
 // What a light is taken to bring to the image.
-double value_of(const Vpls& vpls, const LightStore& store, const LightStore::Place& at) {
+double value_of(const Vpls& vpls, const LightStore& store, const LightStore::Entry& at) {
   return double(at.worth) + vpls.per_flux * flux_at(store, at);
 }
 
@@ -82,14 +82,14 @@ double value_of(const Vpls& vpls, const LightStore& store, const LightStore::Pla
 void select_lights(const Job& job, uint32_t pass, uint32_t number, LightStore& store) {
   const Vpls& v = *job.vpls;
   const uint64_t key = hash(hash(job.seed, 0x6b657074), hash(pass, number));
-  std::vector<LightStore::Place> kept;
-  for (LightStore::Place& at : store.places) {
+  std::vector<LightStore::Entry> kept;
+  for (LightStore::Entry& at : store.entries) {
     const double chance = std::min(value_of(v, store, at) / v.least, 1.0);  // (I2)
     if (!(double(hash(key, uint64_t(at.path) << 32 | uint32_t(at.s)) >> 11) * 0x1p-53 < chance)) continue;
     at.counts = float(1 / chance);
     kept.push_back(at);
   }
-  store.places = std::move(kept);
+  store.entries = std::move(kept);
 }
 
 // Traces the light subpaths, and copies of their vertices those alone that are kept.
@@ -111,11 +111,11 @@ std::vector<Group> trace_groups(const Job& job, uint64_t stream, uint32_t pass, 
 }
 
 void put_in_order(const Scene& scene, LightStore& store) {
-  std::vector<std::pair<uint64_t, LightStore::Place>> keyed;
-  for (const LightStore::Place& at : store.places)
+  std::vector<std::pair<uint64_t, LightStore::Entry>> keyed;
+  for (const LightStore::Entry& at : store.entries)
     keyed.emplace_back(morton_key(store.vertex(at), scene.center, scene.radius), at);
   std::stable_sort(keyed.begin(), keyed.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  for (size_t i = 0; i < keyed.size(); ++i) store.places[i] = keyed[i].second;
+  for (size_t i = 0; i < keyed.size(); ++i) store.entries[i] = keyed[i].second;
 }
 
 // Lights per area here, of the side that has more where light goes through: joins come from either, and none that has a
@@ -131,11 +131,11 @@ void measure_lights(const Job& job, std::vector<Scratch>& scratches, Vpls& vpls)
   const std::vector<Group> groups = trace_groups(job, stream, 0, scratches);
   double worth = 0, flux = 0;
   for (const Group& g : groups)
-    for (const LightStore::Place& at : g.store.places) worth += double(at.worth), flux += flux_at(g.store, at);
+    for (const LightStore::Entry& at : g.store.entries) worth += double(at.worth), flux += flux_at(g.store, at);
   vpls.per_flux = flux > 0 ? by_flux * worth / flux : 0;
   std::vector<double> values;
   for (const Group& g : groups)
-    for (const LightStore::Place& at : g.store.places) values.push_back(value_of(vpls, g.store, at));
+    for (const LightStore::Entry& at : g.store.entries) values.push_back(value_of(vpls, g.store, at));
   vpls.least = find_threshold(std::move(values), vpls.most);
 }
 
@@ -162,7 +162,7 @@ void trace_vpls(const Job& job, const Film& film, uint32_t pass, std::vector<Scr
   }
   put_in_order(*job.scene, vpls.store);
   std::vector<float> near;
-  for (const LightStore::Place& at : vpls.store.places) {
+  for (const LightStore::Entry& at : vpls.store.entries) {
     // No walk shares what is only joined.
     const auto per_light = [&] { return inv_pi / std::max(most_density(job, vpls.store.vertex(at)), 1e-30); };
     near.push_back(at.only_joined ? 0 : float(per_light()));

@@ -46,7 +46,7 @@ double share_of_joins(const Job& job, const Vec3& y, const Vec3& ng, const Vec3&
   return lights > 0 ? lights / (lights + walked) : 0;  // (I1)
 }
 
-double share_at(const Job& job, const LightStore::Place& at, const Vec3& x, double walked) {
+double share_at(const Job& job, const LightStore::Entry& at, const Vec3& x, double walked) {
   const Vertex& y = job.vpls->store.vertex(at);
   return at.only_joined ? 1 : share_of_joins(job, y.p, y.ng, x - y.p, walked);
 }
@@ -125,10 +125,10 @@ void join_vpls(Work& work) {
   const uint32_t key = uint32_t(work.sample.sampler.next1() * 0x1p32f);
   choose_some(store, scratch.expected, joins, key, scratch.choices);
   for (const StoreChoice& choice : scratch.choices) {
-    const LightStore::Place& at = *choice.place;
+    const LightStore::Entry& at = *choice.entry;
     Candidate c;
     const bool seen = join_vertices(store.end(at), camera.first(camera.n), 0, c) && is_free(work, c, at.s, camera.n);
-    if (visibility) learn(*visibility, uint32_t(&at - store.places.data()), seen);
+    if (visibility) learn(*visibility, uint32_t(&at - store.entries.data()), seen);
     if (seen) {
       const double share = share_at(job, at, camera[camera.n - 1].p, c.light.other);
       c.value *= choice.weight;

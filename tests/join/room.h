@@ -52,7 +52,7 @@ struct Room {
   Room& operator=(const Room&) = delete;
 
   // So many light subpaths, and of their vertices so many at most; shares are those that light walks end with.
-  LightStore store(uint32_t paths, size_t most_places = ~size_t(0)) const {
+  LightStore store(uint32_t paths, size_t most_entries = ~size_t(0)) const {
     LightStore out;
     Subpath light;
     Surface surface;
@@ -66,7 +66,7 @@ struct Room {
         }
       add(out, light, walk.first_share);
     }
-    out.places.resize(std::min(out.places.size(), most_places));
+    out.entries.resize(std::min(out.entries.size(), most_entries));
     finish(out);
     return out;
   }
@@ -85,15 +85,15 @@ struct Room {
 
 inline const Vertex& end_of(const Subpath& path) { return path[path.n - 1]; }
 inline size_t index_of(const LightStore& store, const StoreChoice& choice) {
-  return size_t(choice.place - store.places.data());
+  return size_t(choice.entry - store.entries.data());
 }
 inline Sampler draws(uint64_t path) { return make_sampler(SamplerKind::independent, 9, Side::camera, path, 0); }
 
-// What a place brings to a camera subpath, but for visibility, times a factor of no meaning. Places of subpaths that
+// What an entry brings to a camera subpath, but for visibility, times a factor of no meaning. Entries of subpaths that
 // would be too long bring nothing.
 inline std::vector<double> brought(const LightStore& store, const Subpath& camera, int most) {
   std::vector<double> out;
-  for (const LightStore::Place& at : store.places) {
+  for (const LightStore::Entry& at : store.entries) {
     Candidate c;
     const bool joined = at.s <= most && join_vertices(store.end(at), camera.first(camera.n), 64, c);
     out.push_back(joined ? double(luminance(c.value)) * (0.5 + double(hash(out.size(), 3) % 1000) / 1000) : 0);

@@ -11,14 +11,14 @@
 namespace ajar::room {
 namespace {
 
-// The mean of the sum of weight x g over draws is the sum of g over all places, over paths; with chances to see them
+// The mean of the sum of weight x g over draws is the sum of g over all entries, over paths; with chances to see them
 // too, whatever these are.
 void expect_several_unbiased(const LightStore& store, const std::vector<Subpath>& cameras, const Prospect& known) {
   int lit = 0;
   for (const Subpath& camera : cameras) {
     const std::vector<double> g = brought(store, camera, most_edges);
     double expected = 0;
-    for (size_t i = 0; i < g.size(); ++i) expected += g[i] * double(store.places[i].counts) / store.paths;
+    for (size_t i = 0; i < g.size(); ++i) expected += g[i] * double(store.entries[i].counts) / store.paths;
     Expectation sums;
     expect_all(store, end_of(camera), most_edges, known, sums);
     std::vector<StoreChoice> choices;
@@ -40,15 +40,15 @@ void expect_several_unbiased(const LightStore& store, const std::vector<Subpath>
   EXPECT_GT(lit, int(cameras.size()) * 2 / 3);
 }
 
-TEST(LightStore, SeveralStandForAllPlaces) {
+TEST(LightStore, SeveralStandForAllEntries) {
   const Room room(1, true);
   LightStore store = room.store(64);
-  for (size_t i = 0; i < store.places.size(); ++i) store.places[i].counts = float(1 + i % 3);
-  finish(store, std::vector<float>(store.places.size(), 0.1f));
+  for (size_t i = 0; i < store.entries.size(); ++i) store.entries[i].counts = float(1 + i % 3);
+  finish(store, std::vector<float>(store.entries.size(), 0.1f));
   expect_several_unbiased(store, room.cameras(12), {});
   Visibility seen;
   start(store, seen);
-  for (uint32_t i = 0; i < 300; ++i) learn(seen, uint32_t(hash(i, 1) % store.places.size()), hash(i, 2) % 3 == 0);
+  for (uint32_t i = 0; i < 300; ++i) learn(seen, uint32_t(hash(i, 1) % store.entries.size()), hash(i, 2) % 3 == 0);
   expect_several_unbiased(store, room.cameras(12), {&seen});
   const Views views = room.fields.views;
   for (const uint32_t region : {0u, views.regions / 2, no_region})
@@ -59,16 +59,16 @@ TEST(LightStore, SeveralStandForAllPlaces) {
 TEST(LightStore, SeveralByWhatRegionsSee) {
   const Room room(1, true);
   LightStore store = room.store(64);
-  finish(store, std::vector<float>(store.places.size(), 0.1f));
+  finish(store, std::vector<float>(store.entries.size(), 0.1f));
   const Views& views = room.fields.views;
   ASSERT_GT(views.regions, 3u);
   Expectation all, seen;
   const Subpath camera = room.cameras(1)[0];
   expect_all(store, end_of(camera), most_edges, {}, all);
   expect_all(store, end_of(camera), most_edges, {nullptr, &views, 1}, seen);
-  for (size_t i = 0; i < store.places.size(); ++i) {
+  for (size_t i = 0; i < store.entries.size(); ++i) {
     const size_t block = i / LightStore::width, k = i % LightStore::width;
-    EXPECT_FLOAT_EQ(seen.values[block][k], all.values[block][k] * chance(views, 1, store.places[i].region)) << i;
+    EXPECT_FLOAT_EQ(seen.values[block][k], all.values[block][k] * chance(views, 1, store.entries[i].region)) << i;
   }
 }
 
@@ -76,7 +76,7 @@ TEST(LightStore, SeveralByWhatRegionsSee) {
 TEST(Visibility, TellsSeenFromHidden) {
   const Room room(1, true);
   LightStore store = room.store(64);
-  finish(store, std::vector<float>(store.places.size(), 0.1f));
+  finish(store, std::vector<float>(store.entries.size(), 0.1f));
   Visibility v;
   start(store, v);
   for (int k = 0; k < 20; ++k) learn(v, 3, true), learn(v, 4, false), learn(v, 40, false);
@@ -91,19 +91,19 @@ TEST(Visibility, TellsSeenFromHidden) {
 TEST(LightStore, ChoicesStay) {
   const Room room(1, true);
   LightStore store = room.store(64);
-  finish(store, std::vector<float>(store.places.size(), 0.1f));
+  finish(store, std::vector<float>(store.entries.size(), 0.1f));
   const std::vector<Subpath> cameras = room.cameras(12);
   const auto choices_of = [&](uint32_t key, size_t k, float count) {
     LightStore some = store;
-    some.places[2].counts = count;
-    if (count > 1) std::reverse(some.places.begin(), some.places.end());
-    finish(some, std::vector<float>(some.places.size(), 0.1f));
+    some.entries[2].counts = count;
+    if (count > 1) std::reverse(some.entries.begin(), some.entries.end());
+    finish(some, std::vector<float>(some.entries.size(), 0.1f));
     Expectation sums;
     expect_all(some, end_of(cameras[k]), most_edges, {}, sums);
     std::vector<StoreChoice> choices;
     choose_some(some, sums, 5, key, choices);
     std::set<std::pair<uint32_t, int>> chosen;
-    for (const StoreChoice& c : choices) chosen.insert({c.place->path, c.place->s});
+    for (const StoreChoice& c : choices) chosen.insert({c.entry->path, c.entry->s});
     return chosen;
   };
   size_t all = 0, other = 0;

@@ -17,7 +17,7 @@ void draw(const LightStore& store, const Joiner& joiner, Sampler& sampler, std::
   choose(store, joiner, sampler, storage, choices);
 }
 
-// The mean of weight x g over draws is the sum of g over all places, over paths; and a weight wrong by a little would
+// The mean of weight x g over draws is the sum of g over all entries, over paths; and a weight wrong by a little would
 // be seen. Returns how many vertices had something to bring.
 int expect_unbiased(const LightStore& store, const std::vector<Subpath>& cameras, int most = most_edges, int n = 40'000,
                     float worth = 0, uint32_t blocks = 1) {
@@ -26,7 +26,7 @@ int expect_unbiased(const LightStore& store, const std::vector<Subpath>& cameras
   for (size_t k = 0; k < cameras.size(); ++k) {
     const std::vector<double> g = brought(store, cameras[k], most);
     double expected = 0;
-    for (size_t i = 0; i < g.size(); ++i) expected += g[i] * double(store.places[i].counts) / store.paths;
+    for (size_t i = 0; i < g.size(); ++i) expected += g[i] * double(store.entries[i].counts) / store.paths;
     Sampler sampler = draws(k);
     double sum = 0, squares = 0;
     for (int i = 0; i < n; ++i) {
@@ -49,13 +49,13 @@ int expect_unbiased(const LightStore& store, const std::vector<Subpath>& cameras
   return lit;
 }
 
-TEST(LightStore, StandsForAllPlacesOfWhichSomeCountMore) {
+TEST(LightStore, StandsForAllEntriesOfWhichSomeCountMore) {
   const Room room(1, true);
   const LightStore all = room.store(64);
   LightStore some;
-  subsample(some, {&all}, 0.4 * double(all.places.size()), 0.5f);
+  subsample(some, {&all}, 0.4 * double(all.entries.size()), 0.5f);
   finish(some);
-  ASSERT_GT(std::count_if(some.places.begin(), some.places.end(), [](const auto& p) { return p.counts > 1.5f; }), 4);
+  ASSERT_GT(std::count_if(some.entries.begin(), some.entries.end(), [](const auto& p) { return p.counts > 1.5f; }), 4);
   EXPECT_GT(expect_unbiased(some, room.cameras(12)), 8);
 }
 
@@ -66,26 +66,26 @@ TEST(LightStore, PartsAddUpToTheWhole) {
   append(joined, whole);
   append(joined, whole);
   EXPECT_EQ(joined.paths, 2 * whole.paths);
-  ASSERT_EQ(joined.places.size(), 2 * whole.places.size());
-  for (size_t i = 0; i < whole.places.size(); ++i) {
-    const LightStore::Place &a = whole.places[i], &b = joined.places[whole.places.size() + i];
+  ASSERT_EQ(joined.entries.size(), 2 * whole.entries.size());
+  for (size_t i = 0; i < whole.entries.size(); ++i) {
+    const LightStore::Entry &a = whole.entries[i], &b = joined.entries[whole.entries.size() + i];
     EXPECT_EQ(whole.vertex(a).p, joined.vertex(b).p);
     EXPECT_EQ(a.own_before, b.own_before);
   }
 }
 
-TEST(LightStore, StandsForAllPlaces) {
+TEST(LightStore, StandsForAllEntries) {
   const Room room;
   EXPECT_GT(expect_unbiased(room.store(64), room.cameras(12)), 8);
 }
 
-TEST(LightStore, StandsForAllPlacesWhateverViewsSay) {
+TEST(LightStore, StandsForAllEntriesWhateverViewsSay) {
   const Room room(1, true);
   ASSERT_GT(room.fields.views.regions, 4u);
   EXPECT_GT(expect_unbiased(room.store(64), room.cameras(12)), 8);
 }
 
-TEST(LightStore, StandsForAllPlacesHoweverManyBlocksAreLookedAt) {
+TEST(LightStore, StandsForAllEntriesHoweverManyBlocksAreLookedAt) {
   const Room room(1, true);
   const LightStore store = room.store(64);
   ASSERT_GT(store.blocks.size(), 3u);
@@ -95,7 +95,7 @@ TEST(LightStore, StandsForAllPlacesHoweverManyBlocksAreLookedAt) {
 }
 
 // What is worth little is joined rarely and counts for the more, what is worth much often. (J3)
-TEST(LightStore, StandsForAllPlacesHoweverManyAreJoined) {
+TEST(LightStore, StandsForAllEntriesHoweverManyAreJoined) {
   const Room room;
   const LightStore store = room.store(64);
   double before = 0;
@@ -120,18 +120,18 @@ TEST(LightStore, StandsForAllPlacesHoweverManyAreJoined) {
   EXPECT_GT(before, 30);
 }
 
-// One place; a full block; one more, which makes two blocks of unequal number.
-TEST(LightStore, StandsForFewPlaces) {
+// One entry; a full block; one more, which makes two blocks of unequal number.
+TEST(LightStore, StandsForFewEntries) {
   const Room room;
-  for (const size_t places : {1u, 2u, 31u, 32u, 33u}) {
-    const LightStore store = room.store(64, places);
-    ASSERT_EQ(store.places.size(), places);
-    ASSERT_EQ(store.blocks.size(), (places + 31) / 32);
-    EXPECT_GT(expect_unbiased(store, room.cameras(6), most_edges, 20'000), 0) << places;
+  for (const size_t entries : {1u, 2u, 31u, 32u, 33u}) {
+    const LightStore store = room.store(64, entries);
+    ASSERT_EQ(store.entries.size(), entries);
+    ASSERT_EQ(store.blocks.size(), (entries + 31) / 32);
+    EXPECT_GT(expect_unbiased(store, room.cameras(6), most_edges, 20'000), 0) << entries;
   }
 }
 
-TEST(LightStore, StandsForPlacesOfShortSubpathsAlone) {
+TEST(LightStore, StandsForEntriesOfShortSubpathsAlone) {
   const Room room;
   const LightStore store = room.store(64);
   EXPECT_GT(expect_unbiased(store, room.cameras(6), 2), 3);
@@ -140,15 +140,15 @@ TEST(LightStore, StandsForPlacesOfShortSubpathsAlone) {
   for (const Subpath& camera : room.cameras(12))
     for (int i = 0; i < 200; ++i) {
       draw(store, {&end_of(camera), 2}, sampler, choices);
-      for (const StoreChoice& choice : choices) ASSERT_EQ(choice.place->s, 2);
+      for (const StoreChoice& choice : choices) ASSERT_EQ(choice.entry->s, 2);
     }
 }
 
-TEST(LightStore, StandsForAllPlacesAtAnySize) {
+TEST(LightStore, StandsForAllEntriesAtAnySize) {
   for (const float scale : {1e-6f, 1e6f}) {
     const Room room(scale);
     const LightStore store = room.store(64);
-    ASSERT_GT(store.places.size(), 64u) << scale;
+    ASSERT_GT(store.entries.size(), 64u) << scale;
     EXPECT_GT(expect_unbiased(store, room.cameras(6), most_edges, 20'000), 3) << scale;
   }
 }
@@ -162,14 +162,14 @@ double shine_of(const Vertex& v, const glm::dvec3& w) {
   return shine(g, glm::dot(n, v.guide.wo), glm::dot(n, unit), glm::dot(unit, v.guide.wo));
 }
 
-// The probabilities that places ought to have, from the vertices themselves: choices are among one block, or all. (J1)
+// The probabilities that entries ought to have, from the vertices themselves: choices are among one block, or all. (J1)
 std::vector<double> probabilities(const LightStore& store, const Room& room, const Joiner& joiner) {
   const Vertex& c = *joiner.vertex;
   const size_t n = joiner.blocks > 1 ? 1 : store.blocks.size();
   const double lights = joiner.onwards / joiner.counts, before = joiner.before / joiner.counts;
   std::vector<double> p, sums(n);
-  for (size_t i = 0; i < store.places.size(); ++i) {
-    const Vertex& a = store.vertex(store.places[i]);
+  for (size_t i = 0; i < store.entries.size(); ++i) {
+    const Vertex& a = store.vertex(store.entries[i]);
     const glm::dvec3 w = glm::dvec3(c.p) - glm::dvec3(a.p);
     const double d2 = glm::dot(w, w), cosines = std::max(glm::dot(glm::dvec3(a.guide.frame.n), w), 0.0) *
                                                 std::max(-glm::dot(glm::dvec3(c.guide.frame.n), w), 0.0) / d2;
@@ -186,7 +186,7 @@ std::vector<double> probabilities(const LightStore& store, const Room& room, con
   return p;
 }
 
-TEST(LightStore, ChoosesByWhatPlacesWouldBring) {
+TEST(LightStore, ChoosesByWhatEntriesWouldBring) {
   const Room room(1, true);
   const LightStore store = room.store(40);
   ASSERT_GT(store.blocks.size(), 2u);
@@ -256,13 +256,13 @@ TEST(LightStore, NothingBehindIsChosen) {
   int chosen = 0, behind = 0;
   for (const Subpath& camera : room.cameras(20)) {
     const Vertex& c = end_of(camera);
-    for (const LightStore::Place& at : store.places) behind += !may_scatter(c.guide, store.vertex(at).p - c.p);
+    for (const LightStore::Entry& at : store.entries) behind += !may_scatter(c.guide, store.vertex(at).p - c.p);
     Sampler sampler = draws(2);
     std::vector<StoreChoice> choices;
     for (int i = 0; i < 1000; ++i) {
       draw(store, {&c, most_edges}, sampler, choices);
       for (const StoreChoice& choice : choices) {
-        const Vertex& a = store.vertex(*choice.place);
+        const Vertex& a = store.vertex(*choice.entry);
         ASSERT_TRUE(may_scatter(c.guide, a.p - c.p));
         ASSERT_TRUE(may_scatter(a.guide, c.p - a.p));
         ++chosen;
@@ -294,7 +294,7 @@ TEST(LightStore, HoldsNoBlackBacks) {
       trace_subpath(scene, accel, options, Side::light, i, 0, 3, light);
       add(store, light, 1);
     }
-    EXPECT_EQ(store.places.empty(), !two_sided);
+    EXPECT_EQ(store.entries.empty(), !two_sided);
   }
 }
 
@@ -318,20 +318,20 @@ TEST(LightStore, JoinsAsTheSubpathItself) {
       Candidate c;
       return join_vertices(end, camera.first(camera.n), 64, c) ? weight(Heuristic::power, c) : -1;
     };
-    const size_t before = store.places.size();
+    const size_t before = store.entries.size();
     add(store, light, walk.first_share);
-    size_t place = before;
+    size_t entry = before;
     for (int s = 2; s <= light.n; ++s) {
       if (!connectable(light[s - 1].guide) || !(luminance(light[s - 1].beta) > 0)) continue;
-      ASSERT_LT(place, store.places.size());
-      const LightStore::Place& at = store.places[place++];
+      ASSERT_LT(entry, store.entries.size());
+      const LightStore::Entry& at = store.entries[entry++];
       EXPECT_EQ(at.s, s);
       counts += std::abs(at.share - 1) > 0.1;
       EXPECT_EQ(weigh(store.end(at)), weigh(light_end(light.first(s), walk.first_share)));
     }
-    EXPECT_EQ(place, store.places.size());
+    EXPECT_EQ(entry, store.entries.size());
   }
-  EXPECT_GT(counts, 20) << "places whose share is not 1";
+  EXPECT_GT(counts, 20) << "entries whose share is not 1";
 }
 
 }  // namespace

@@ -17,9 +17,9 @@ double find_threshold(std::vector<double> values, double count);
 /// that vertices near each other in the order are alike.
 uint64_t morton_key(const Vertex& v, const Vec3& center, float radius);
 
-/// Fills a store with about `count` of the places of others, or with all where there are fewer, by what the fields
+/// Fills a store with about `count` of the entries of others, or with all where there are fewer, by what the fields
 /// expect each to bring to the image; a part of the choice goes by flux, a part is even, and all of that where fields
-/// know nothing. What is kept stands for what is not: Place::counts (J2). u in [0, 1): systematic sampling, in the
+/// know nothing. What is kept stands for what is not: Entry::counts (J2). u in [0, 1): systematic sampling, in the
 /// order of morton_key, in which the kept ones are left: so they are spread as evenly as all are. Blocks are not
 /// made yet.
 void subsample(LightStore& out, const std::vector<const LightStore*>& stores, double count, float u);

@@ -13,7 +13,7 @@ namespace ajar {
 /// Vertices of light subpaths that can be joined (s >= 2), each with what joins read of the subpath. (pool.h keeps a
 /// few.)
 struct LightStore {
-  struct Place {
+  struct Entry {
     uint32_t vertex = 0;        ///< which of the vertices
     int s = 0;                  ///< vertices of its subpath up to this one
     bool delta_before = false;  ///< see LightEnd
@@ -25,9 +25,9 @@ struct LightStore {
     float flux = 0;     ///< luminance that it scatters, see Block
     float worth = 0;    ///< what the fields expect it to bring to the image, direct view aside
   };
-  /// What a choice reads of so many places, side by side.
+  /// What a choice reads of so many entries, side by side.
   static constexpr uint32_t width = 32, runs = 8;
-  using Values = std::array<float, width>;  ///< of the places of a block; every eighth from one on makes a run
+  using Values = std::array<float, width>;  ///< of the entries of a block; every eighth from one on makes a run
   using Sums = std::array<float, runs>;     ///< of the runs up to and with each
   struct alignas(64) Block {
     float x[width] = {}, y[width] = {}, z[width] = {};
@@ -43,12 +43,12 @@ struct LightStore {
     int s[width] = {};
   };
   std::vector<Vertex> vertices;
-  std::vector<Place> places;
-  std::vector<Block> blocks;  ///< of places as finish() put them
+  std::vector<Entry> entries;
+  std::vector<Block> blocks;  ///< of entries as finish() put them
   uint32_t paths = 0;         ///< light subpaths that were tried, those that brought no vertex too
 
-  const Vertex& vertex(const Place& at) const { return vertices[at.vertex]; }
-  LightEnd end(const Place& at) const { return {&vertex(at), at.s, at.delta_before, at.own_before, at.share}; }
+  const Vertex& vertex(const Entry& at) const { return vertices[at.vertex]; }
+  LightEnd end(const Entry& at) const { return {&vertex(at), at.s, at.delta_before, at.own_before, at.share}; }
 };
 
 /// A camera vertex that is to be joined. What strategies count for is not raised.
@@ -65,45 +65,45 @@ struct Joiner {
 };
 
 struct StoreChoice {
-  const LightStore::Place* place = nullptr;
-  float weight = 0;  ///< with which the join counts: its sum over all places, over light subpaths
+  const LightStore::Entry* entry = nullptr;
+  float weight = 0;  ///< with which the join counts: its sum over all entries, over light subpaths
 };
 
 void clear(LightStore& store);
 /// share: of the walk.
 void add(LightStore& store, const Subpath& light, double share);
-/// Makes the blocks, when all is added: each an even sample of all places, place i in block i % blocks, at i / blocks.
+/// Makes the blocks, when all is added: each an even sample of all entries, entry i in block i % blocks, at i / blocks.
 /// For choose().
 void finish(LightStore& store);
-/// Makes blocks of neighbours, with what near of each place is to be: place i in block i / width, at i % width. For
+/// Makes blocks of neighbours, with what near of each entry is to be: entry i in block i / width, at i % width. For
 /// expect_all(), choose_some() and learn().
 void finish(LightStore& store, std::span<const float> near);
 /// Adds all of another store, before the blocks are made.
 void append(LightStore& store, const LightStore& more);
-/// What places of a store would bring to one camera vertex.
+/// What entries of a store would bring to one camera vertex.
 struct Expectation {
   std::vector<LightStore::Values> values;  ///< per block
   std::vector<LightStore::Sums> sums;      ///< of them
   float sum = 0;
 };
-/// Draws from the places of some blocks in proportion to what they would bring unoccluded times the chance that they
+/// Draws from the entries of some blocks in proportion to what they would bring unoccluded times the chance that they
 /// are seen (resampling: Talbot et al. 2005), evenly spaced over their sums: the more of the pixel's light is expected,
 /// the more, in the mean a tenth to 32 (J3). Takes one pair of numbers. expected: storage.
 void choose(const LightStore& store, const Joiner& joiner, Sampler& sampler, Expectation& expected,
             std::vector<StoreChoice>& out);
 
 struct Visibility;
-/// What is known of which places a camera vertex sees: by what its tile saw of each in this pass, by the region that it
-/// is in, or nothing, where all places count in full.
+/// What is known of which entries a camera vertex sees: by what its tile saw of each in this pass, by the region that
+/// it is in, or nothing, where all entries count in full.
 struct Prospect {
   const Visibility* tile = nullptr;
   const Views* views = nullptr;
   uint32_t region = no_region;
 };
-/// Of all places; the store was put in order. most: largest s.
+/// Of all entries; the store was put in order. most: largest s.
 void expect_all(const LightStore& store, const Vertex& camera, int most, const Prospect& known, Expectation& out);
-/// Draws about `count` places, each on its own (Poisson sampling), in proportion to what is expected of it and at most
-/// once. key: random bits. Whether a place is drawn depends on its chance and on a hash of key and light vertex alone:
+/// Draws about `count` entries, each on its own (Poisson sampling), in proportion to what is expected of it and at most
+/// once. key: random bits. Whether an entry is drawn depends on its chance and on a hash of key and light vertex alone:
 /// as lights move a little, nearly all choices stay.
 void choose_some(const LightStore& store, const Expectation& expected, int count, uint32_t key,
                  std::vector<StoreChoice>& out);

@@ -1,5 +1,5 @@
-// Enters: which places of a store a group of camera vertices near each other saw, join by join.
-// Leaves: the chance that the next of them sees a place.
+// Enters: which entries of a store a group of camera vertices near each other saw, join by join.
+// Leaves: the chance that the next of them sees an entry.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace ajar {
 
-/// Learned from what was seen of the place itself, of those beside it in the order of the store (its block), and of
+/// Learned from what was seen of the entry itself, of those beside it in the order of the store (its block), and of
 /// all.
 struct Visibility {
   struct Block {
@@ -20,9 +20,9 @@ struct Visibility {
   float tried = 0, seen = 0;
 };
 
-/// Nothing is known of the places of this store, which were put in order: each chance is a half.
+/// Nothing is known of the entries of this store, which were put in order: each chance is a half.
 void start(const LightStore& store, Visibility& visibility);
-/// place: its number in the store. (I5)
-void learn(Visibility& visibility, uint32_t place, bool seen);
+/// entry: its number in the store. (I5)
+void learn(Visibility& visibility, uint32_t entry, bool seen);
 
 }  // namespace ajar
