@@ -19,13 +19,6 @@ Shares shares_from(const Vertex& v, double first, double light_paths) {
 
 }  // namespace
 
-End end_at(std::span<const Vertex> subpath, double other, double reverse) {
-  const Vertex& v = subpath.back();
-  const Vertex& before = subpath[subpath.size() - 2];
-  const bool delta = before.delta;
-  return {int(subpath.size()), v.own, other, before.own, reverse * v.back, delta, v.sum, v.merge, v.seen, before.seen};
-}
-
 bool join_hit(const Scene& scene, const Fields* fields, const Subpath& camera, const Surface& surface, Candidate& out) {
   const LightPoint point = light_point(scene, surface);
   const Vertex& v = camera[camera.n - 1];

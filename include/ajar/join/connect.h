@@ -35,7 +35,12 @@ struct Candidate {
 
 /// The end of a subpath of two vertices or more at its last one: other is its area density from the other side, reverse
 /// the density per solid angle of going back to the vertex before.
-End end_at(std::span<const Vertex> subpath, double other, double reverse);
+inline End end_at(std::span<const Vertex> subpath, double other, double reverse) {
+  const Vertex& v = subpath.back();
+  const Vertex& before = subpath[subpath.size() - 2];
+  const bool delta = before.delta;
+  return {int(subpath.size()), v.own, other, before.own, reverse * v.back, delta, v.sum, v.merge, v.seen, before.seen};
+}
 /// s = 0: the camera subpath's last vertex is on a light. surface is that of the vertex.
 bool join_hit(const Scene& scene, const Fields* fields, const Subpath& camera, const Surface& surface, Candidate& out);
 /// s = 0: the camera subpath left the scene in the walk's direction; one infinite light.
