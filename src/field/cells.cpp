@@ -47,10 +47,18 @@ CellTable::Part* entry_in_parent(CellTable& table, CellKey key) {
   return parent && parent->at.parts ? &table.parts[parent->at.parts][octant_of(coordinates_of(key))] : nullptr;
 }
 
-// Coordinates of a point on the finest level.
-glm::uvec3 finest(const CellTable& table, const Vec3& p) {
-  const Vec3 q = (p - table.origin) * (float(1 << most_cell_levels) / table.width);
-  return glm::uvec3(glm::clamp(q, Vec3(0), Vec3(float(most_coordinate))));
+// A point on the finest level.
+Vec3 scaled(const CellTable& table, const Vec3& p) {
+  return (p - table.origin) * (float(1 << most_cell_levels) / table.width);
+}
+
+// Whether keys reach as far.
+bool in_range(const Vec3& scaled) {
+  return std::min({scaled.x, scaled.y, scaled.z}) >= 0 && std::max({scaled.x, scaled.y, scaled.z}) < most_coordinate;
+}
+
+glm::uvec3 coordinates(const Vec3& scaled) {
+  return glm::uvec3(glm::clamp(scaled, Vec3(0), Vec3(float(most_coordinate))));
 }
 
 // Number of the cube of level 0 among those that walls are looked for in; past the last one elsewhere.
@@ -134,20 +142,16 @@ uint32_t normal_bin(const Vec3& n) {
   return third(n.x) + 3 * third(n.y) + 9 * third(n.z);
 }
 
-CellTable make_cell_table(const Vec3& center, float radius) {
-  CellTable t;
-  t.width = radius / 6;
+CellTable make_cell_table(const Vec3& center, float radius, float width) {
   // Walls like to stand at round coordinates; the cubes' faces should not coincide with them.
-  t.origin = center - Vec3(1.0371f, 1.0193f, 1.0457f) * radius;
+  const Vec3 before = Vec3(1.0371f, 1.0193f, 1.0457f) * radius;
+  CellTable t;
+  t.width = width > 0 ? width : radius / 6;
+  const auto across = uint32_t(std::ceil(2 * before.z / t.width));
+  t.first = ((most_coordinate >> most_cell_levels) + 1 - across) / 2;
+  t.origin = center - before - float(t.first) * t.width;
   t.slots.resize(256);
   return t;
-}
-
-void focus(CellTable& table, const Vec3& center, float radius) {
-  const CellTable around = make_cell_table(center, radius);
-  table.width = around.width;
-  table.first = (most_coordinate >> most_cell_levels) / 2 - top_cubes / 2;
-  table.origin = around.origin - float(table.first) * table.width;
 }
 
 CellTable make_probe_table(std::vector<Probe> probes, double area) {
@@ -159,11 +163,13 @@ CellTable make_probe_table(std::vector<Probe> probes, double area) {
   return t;
 }
 
-size_t top_cube(const CellTable& table, const Vec3& p) { return top_cube(table, finest(table, p)); }
+size_t top_cube(const CellTable& table, const Vec3& p) { return top_cube(table, coordinates(scaled(table, p))); }
 
 Place find(const CellTable& table, const Vec3& p, const Vec3& n) {
   if (!table.probes.empty()) return find_probe(table, p, n);
-  const glm::uvec3 c = finest(table, p);
+  const Vec3 at_finest = scaled(table, p);
+  if (!in_range(at_finest)) return {};
+  const glm::uvec3 c = coordinates(at_finest);
   const uint32_t kind = normal_bin(n) | compartment_of(table, c, p) << 5;
   const CellKey top = make_key(0, kind, c >> uint32_t(most_cell_levels));
   const CellTable::Slot* slot = find_slot(table, top);

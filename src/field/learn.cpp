@@ -228,11 +228,10 @@ CellTable start_table(const Scene& scene, const LearnOptions& options) {
     std::vector<Probe> probes = place_probes(scene, uint32_t(std::clamp(cells, 1.0, 1e7)), area);
     return make_probe_table(std::move(probes), area);
   }
-  CellTable table = make_cell_table(scene.center, scene.radius);
+  if (options.structure != Structure::grid) return make_cell_table(scene.center, scene.radius);
   // A plane that leans cuts through half as many cubes again as its area has squares.
-  if (options.structure == Structure::grid)
-    table.width = std::clamp(float(std::sqrt(1.5 * area(scene) / cells)), scene.radius / 100, scene.radius);
-  return table;
+  const float width = std::clamp(float(std::sqrt(1.5 * area(scene) / cells)), scene.radius / 100, scene.radius);
+  return make_cell_table(scene.center, scene.radius, width);
 }
 
 // Less weight to all strata of a cell.

@@ -110,7 +110,7 @@ Ball focus_on_middle(const Scene& scene, const Found& found, CellTable& table) {
   const Ball middle = visited_part(found);
   if (!(middle.radius < most_middle * scene.radius)) return all;
   const float radius = std::max(middle.radius, scene.radius / largest_around);
-  focus(table, middle.center, radius);
+  table = make_cell_table(middle.center, radius);
   return {middle.center, std::min(2 * radius, scene.radius)};
 }
 
@@ -224,9 +224,9 @@ int32_t cut(const Sight& s, const std::vector<uint32_t>& of, float edge, Sides& 
 }  // namespace
 
 void cut_along_walls(const Scene& scene, const Accel& accel, CellTable& table) {
-  table.compartments.assign(size_t(top_cubes) * top_cubes * top_cubes, ~0);
   const Found found = find_spots(scene, accel);
   const Ball part = focus_on_middle(scene, found, table);
+  table.compartments.assign(size_t(top_cubes) * top_cubes * top_cubes, ~0);
   const std::vector<std::vector<Spot>> cubes = spots_of_cubes(found, table);
   std::vector<std::vector<CellCut>> cuts(cubes.size());
   parallel_for(cubes.size(), [&](size_t c) {

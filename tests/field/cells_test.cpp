@@ -16,7 +16,7 @@ CellTable table() { return make_cell_table(Vec3(1, 2, 3), 6); }
 
 // Centre of a cube of level 0.
 Vec3 centre_of_cube(const CellTable& t, int x, int y, int z) {
-  return t.origin + t.width * (Vec3(float(x), float(y), float(z)) + 0.5f);
+  return t.origin + t.width * (float(t.first) + Vec3(float(x), float(y), float(z)) + 0.5f);
 }
 
 TEST(Cells, JitterWithinACellDoesNotMatter) {
@@ -145,9 +145,31 @@ TEST(Cells, FarPlacesAndExtremeSizes) {
     for (const float x : {0.0f, 1.0f, -1e10f, 1e30f, -infinity, infinity})
       for (const Vec3 p : {Vec3(x), Vec3(0, x, 0)}) {
         const Place at = find(t, p, north);
+        if (std::abs(x) > 40 * radius) {
+          EXPECT_EQ(at.cell, none);
+          EXPECT_EQ(at.missing, 0u) << "one cell for all the rest would be none";
+          continue;
+        }
         ASSERT_NE(at.missing == 0, at.cell == none);
         if (at.missing) insert(t, at.missing, 1);
         EXPECT_EQ(find(t, p, north).cell, 1u);
+      }
+  }
+}
+
+// What moves may leave on any side.
+TEST(Cells, ReachAsFarOnEverySide) {
+  for (const float width : {0.0f, 0.07f, 3.0f}) {
+    const CellTable t = make_cell_table(Vec3(1, 2, 3), 6, width);
+    const float far = std::min(100.0f, 100 * t.width);
+    for (int axis = 0; axis < 3; ++axis)
+      for (const float x : {-far, far}) {
+        Vec3 p(1, 2, 3);
+        p[axis] += x;
+        const CellKey key = find(t, p, north).missing;
+        ASSERT_NE(key, 0u) << width << " " << axis << " " << x;
+        const Vec3 off = glm::abs(middle_of(t, key) - p);
+        EXPECT_LT(std::max({off.x, off.y, off.z}), 0.501f * t.width);
       }
   }
 }

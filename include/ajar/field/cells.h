@@ -74,16 +74,17 @@ struct Place {
   CellKey missing = 0;  ///< the cell that ought to be there in place of it; 0 if nothing is missing
 };
 
-CellTable make_cell_table(const Vec3& center, float radius);
-/// Gives it smaller cubes around a part of the scene; the rest has cubes of the same size. Nothing may be in it yet.
-void focus(CellTable& table, const Vec3& center, float radius);
+/// For a scene in a ball, in the middle of what keys reach: some twenty times the radius all around, for what moves.
+/// width: of cubes of level 0; 0: a sixth of the radius.
+CellTable make_cell_table(const Vec3& center, float radius, float width = 0);
 /// area: of the surfaces that the probes stand for [m^2].
 CellTable make_probe_table(std::vector<Probe> probes, double area);
 /// Which of 27 ranges of directions a normal is in; no cell holds two of them.
 uint32_t normal_bin(const Vec3& n);
 /// Number of the cube of level 0 around a point; past the last one where there is none.
 size_t top_cube(const CellTable& table, const Vec3& p);
-/// The smallest cell that a point with this normal is in; n: unit, on the side that matters.
+/// The smallest cell that a point with this normal is in; n: unit, on the side that matters. None beyond what keys
+/// reach.
 Place find(const CellTable& table, const Vec3& p, const Vec3& n);
 /// Gives the key, which is not there yet, a cell.
 void insert(CellTable& table, CellKey key, uint32_t cell);
