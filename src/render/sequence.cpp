@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "ajar/accel/sight.h"
 #include "ajar/core/bytes.h"
 #include "ajar/core/error.h"
+#include "bdpt.h"
 
 namespace ajar {
 namespace {
@@ -36,6 +38,48 @@ bool give_lessons(const Scene& scene, const Accel& accel, const RenderOptions& o
   return !stopped;
 }
 
+void go_on_with(const Scene& scene, const Fields& before, const std::vector<Box>& moved,
+                const SequenceOptions& sequence, const LearnOptions& options, RenderState& state) {
+  StoredFields carried{doubt(before, moved, kept_near_motion, options), {}, 0};
+  for (Cell& c : carried.fields.cells) c.seen *= sequence.forget;  // or cells divide until the memory is full
+  state.learning.train = 0;  // of an image; lessons that time cut short go on from where they are
+  go_on_from(scene, std::move(carried), options, state.learning, state.film);
+}
+
+// Whether lessons have shown a place to the lens: W of its cell has an eighth at least of what the lens gives it.
+bool was_seen(const Camera& camera, const Fields& fields, const Guide& guide, const Vec3& p, const CameraRay& ray) {
+  if (guide.cell == none) return false;
+  const double cosine = std::abs(glm::dot(guide.ng, ray.d));
+  const double given = raster_factor(camera, ray.o, p) * cosine * double(relative_importance(fields, guide));
+  return double(fields.w.cells[guide.cell].direct) >= given / 8;
+}
+
+// Share of what the lens sees that no lesson has shown to it: all of it after a cut.
+double share_unseen(const Scene& scene, const Accel& accel, const Fields& fields) {
+  constexpr int side = 32;
+  const Camera& camera = scene.camera;
+  int all = 0, unseen = 0;
+  for (int i = 0; i < side * side; ++i) {
+    const Vec2 within = (Vec2(float(i % side), float(i / side)) + 0.5f) / float(side);
+    const Vec2 raster = Vec2(float(camera.crop_x), float(camera.crop_y)) +
+                        within * Vec2(float(camera.crop_width), float(camera.crop_height));
+    const CameraRay ray = generate(camera, raster, Vec2(0.5f));
+    Hit hit;
+    if (!first_seen(scene, accel, ray, hit)) continue;
+    Guide guide;
+    const Surface surface = make_surface(scene, hit, ray.o, ray.d);
+    make_guide(scene, &fields, Side::camera, surface, -ray.d, guide);
+    if (!connectable(guide)) continue;
+    ++all, unseen += was_seen(camera, fields, guide, surface.p, ray) ? 0 : 1;
+  }
+  return all > 0 ? double(unseen) / all : 0;
+}
+
+// Half is what the lessons of a tiny image may miss. Fields that are young are still being taught.
+bool is_cut(const Scene& scene, const Accel& accel, const Fields& fields) {
+  return fields.generation >= young_generations && share_unseen(scene, accel, fields) > 0.5;
+}
+
 }  // namespace
 
 uint64_t image_seed(const SequenceOptions& sequence, uint64_t seed, uint32_t frame) {
@@ -54,14 +98,13 @@ std::optional<Fields> teach(const Scene& scene, const Accel& accel, const Render
   teaching.seed = teaching_seed(sequence, options.seed, frame);
   RenderState state = start_render(scene, teaching);
   if (before) {
-    const LearnOptions learning = learn_options(teaching);
-    StoredFields carried{doubt(before->fields, moved, kept_near_motion, learning), {}, 0};
-    for (Cell& c : carried.fields.cells) c.seen *= sequence.forget;  // or cells divide until the memory is full
-    state.learning.train = 0;  // of an image; lessons that time cut short go on from where they are
-    go_on_from(scene, std::move(carried), learning, state.learning, state.film);
-    teaching.learn.forget = sequence.forget, teaching.learn.steady = sequence.coherence.numbers;
-    if (!give_lessons(scene, accel, teaching, 1, sequence.teach, state, monitor)) return {};
-    return std::move(state.learning.fields);
+    go_on_with(scene, before->fields, moved, sequence, learn_options(teaching), state);
+    if (!is_cut(scene, accel, state.learning.fields)) {
+      teaching.learn.forget = sequence.forget, teaching.learn.steady = sequence.coherence.numbers;
+      if (!give_lessons(scene, accel, teaching, 1, sequence.teach, state, monitor)) return {};
+      return std::move(state.learning.fields);
+    }
+    state = start_render(scene, teaching);  // as if nothing were known
   }
   const uint32_t last = sequence.begin - young_generations;
   if (!give_lessons(scene, accel, teaching, young_generations, 1, state, monitor)) return {};

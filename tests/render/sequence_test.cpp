@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
+#include <span>
 
 #include "ajar/core/error.h"
 #include "frames.h"
@@ -257,6 +259,47 @@ TEST(Sequence, LessonsCutShortGoOn) {
       EXPECT_EQ(carried.fields.generation, blind_generations + 1 + frame) << integrator;
     }
   }
+}
+
+// Two closed rooms, each lit by a lamp that shines at the ceiling from behind a screen; the camera is in one of them.
+Scene two_sets(float camera_at) {
+  Scene scene;
+  scene.filter = make_filter(FilterKind::box);
+  set_camera(scene, {camera_at, 1, 0.95f}, {camera_at, 1, 0}, 80, 12, 12);
+  const uint32_t white = add_diffuse(scene, Rgb(0.7f));
+  for (const float x : {0.0f, 8.0f}) {
+    add_box(scene, {x - 1, 0, -1}, {x + 1, 2, 1}, white, true);
+    add_box(scene, {x - 0.35f, 1.58f, -0.35f}, {x + 0.35f, 1.62f, 0.35f}, white);
+    add_area_light(scene, add_quad(scene, {x - 0.15f, 1.63f, 0.15f}, {0.3f, 0, 0}, {0, 0, -0.3f}, white), Rgb(40));
+  }
+  finish(scene);
+  return scene;
+}
+
+// Squared and relative to the truth's, without the worst of 144 pixels.
+double error_of(const Picture& image, const Picture& truth) {
+  std::vector<double> errors;
+  for (size_t i = 0; i < truth.pixels.size(); ++i)
+    errors.push_back(sqr(double(image.pixels[i]) / double(truth.pixels[i]) - 1));
+  std::sort(errors.begin(), errors.end());
+  return std::accumulate(errors.begin(), errors.end() - 3, 0.0) / double(errors.size());
+}
+
+// After a cut fields know nothing of what the lens sees: one lesson would leave a hundred times the error.
+TEST(Sequence, CutsAreTaughtAnew) {
+  const Scene here = two_sets(0), there = two_sets(8);
+  RenderOptions options = statistical("guided-bdpt");
+  options.spp = 256;
+  const Picture truth = last_frame(std::span(&there, 1), options, usual());
+  options.spp = 8;
+  double cut = 0, begun = 0, again = 0;
+  for (options.seed = 1; options.seed <= 4; ++options.seed) {
+    begun += error_of(last_frame(std::span(&there, 1), options, usual()), truth);
+    cut += error_of(last_frame(std::vector{here, here, there}, options, usual()), truth);
+    again += error_of(last_frame(std::vector{there, there, there}, options, usual()), truth);
+  }
+  EXPECT_LT(cut, 2 * begun);
+  EXPECT_LT(again, 2 * begun);
 }
 
 TEST(Sequence, FilesGiveBackWhatIsCarried) {
