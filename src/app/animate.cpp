@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "ajar/core/bytes.h"
 #include "ajar/core/error.h"
@@ -50,6 +51,7 @@ struct Work {
   bool carries = false;     // fields
   bool lost = false;        // fields for a later command: they could not be written
   std::optional<Carried> carried;
+  std::set<std::string> noted;  // by the loader, and told
   std::vector<int> to_do;
   int done = 0;  // of these
   double began = 0;
@@ -232,6 +234,15 @@ void tell_frame(const Work& w, int frame) {
   std::fflush(stdout);
 }
 
+// What the loader notes of a frame alone, or of it and those that follow.
+void tell_notes(Work& w, int frame, const Scene& scene) {
+  for (const std::string& note : scene.notes) {
+    if (!w.noted.insert(note).second || w.arguments.quiet) continue;
+    clear_line();
+    say(stderr, "ajar: note: frame {}: {}\n", frame, note);
+  }
+}
+
 // Whether the frames that taught these fields have the files that they had then. Where this one has those of the first
 // frame, those between are not loaded for it.
 bool is_of_these_files(Work& w, const Carried& carried) {
@@ -262,6 +273,7 @@ void render_frames(Work& w) {
     const bool wanted = std::binary_search(w.to_do.begin(), w.to_do.end(), frame);
     if (!wanted && !w.carries) continue;
     Stage stage = set_up(w.shooting, frame, before ? &*before : nullptr);
+    if (wanted) tell_notes(w, frame, *stage.scene);
     if (wanted) check_apart(w.arguments, {frame, frame, count}, *stage.scene, w.shooting.cache);
     const Lessons lessons = taught ? teach_frame(w, frame, stage) : Lessons{};
     if (wanted) {
@@ -325,6 +337,7 @@ Work prepare(const AnimateArguments& a) {
   if (!a.at.empty() && scene->hints.first_time > scene->hints.last_time)
     throw Error(fmt::format("--at {}: nothing in the scene has an <animation>; leave it out", a.at));
   if (!a.quiet) say_notes(w.shooting.timeline.notes), say_notes(scene->notes);
+  w.noted.insert(scene->notes.begin(), scene->notes.end());
   w.options = render_options(a, *zero);
   w.width = zero->camera.crop_width, w.height = zero->camera.crop_height;
   frame_options(w, r.first, *scene), frame_options(w, r.last, *last);

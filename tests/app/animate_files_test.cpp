@@ -175,6 +175,32 @@ TEST_F(AnimateFiles, RecordsTellWhatWasLeftOut) {
   EXPECT_EQ(record("shot/f_0.json")["options"]["lenient"], true);
 }
 
+// A reflectance above 1 in the later half of a sweep.
+TEST_F(AnimateFiles, NotesOfLaterFramesAreToldOnce) {
+  put(R"(<default name="white" value="1"/>)");
+  std::string room = kit::bytes_of(in("room.xml"));
+  const std::string wall = R"(<bsdf type="diffuse"><rgb name="reflectance" value="$white"/></bsdf>)";
+  write("room.xml", room.insert(room.find("<transform", room.find("<shape")), wall));
+  const auto notes = [&](const char* frames) {
+    testing::internal::CaptureStderr();
+    run_command_line({"animate", in("room.xml"), "--spp", "1", "--integrator", "path", "-D", "white=0.5..2", "--frames",
+                      frames, "-o", in("shot/f_%d.exr")});
+    const std::string told = testing::internal::GetCapturedStderr();
+    Words out;
+    for (size_t at = 0; (at = told.find("note: ", at)) != told.npos; ++at)
+      out.push_back(told.substr(at, told.find('\n', at) - at));
+    return out;
+  };
+  const Words some = notes("0-2/4");
+  ASSERT_EQ(some.size(), 1u);
+  EXPECT_SAYS(some[0], "note: frame 2: " + in("room.xml") + ":");
+  EXPECT_SAYS(some[0], "above 1");
+  fs::remove_all(in("shot"));
+  EXPECT_EQ(notes("4"), some);
+  fs::remove_all(in("shot"));
+  ASSERT_EQ(notes("2-3/4").size(), 1u) << "of the first frame";
+}
+
 TEST_F(AnimateFiles, ReferencesMayBeOfAPart) {
   run("4", "reference", {"--integrator", "path", "--spp", "16"});
   fs::remove(in("reference/f_01.exr"));
