@@ -300,11 +300,13 @@ void write_film(const Work& w) {
   if (!a.quiet) say(stdout, "{}\n", a.video);
 }
 
+std::string figures_stem(const Work& w) { return w.folder + "/animation"; }
+
 void write_figures(const Work& w) {
   std::optional<FramePattern> reference;
   if (!w.arguments.reference.empty()) reference = parse_pattern("--reference", w.arguments.reference);
   const std::vector<FrameFigures> figures = measure(w.pattern, w.shooting.timeline, reference, w.options_key);
-  const std::string stem = w.folder + "/animation";
+  const std::string stem = figures_stem(w);
   write_text(stem + ".json", sequence_json(figures));
   write_text(stem + ".csv", sequence_csv(figures));
   write_text(stem + ".svg", sequence_svg(figures, fmt::format("{}, {}", fs::path(w.arguments.scene).stem().string(),
@@ -356,6 +358,7 @@ Work prepare(const AnimateArguments& a) {
   for (int f = r.first; f <= r.last; ++f)
     if (!is_done(w, f)) w.to_do.push_back(f);
   if (!w.to_do.empty()) check_outputs(w);
+  check_figures(figures_stem(w));
   return w;
 }
 

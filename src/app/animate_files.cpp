@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "ajar/core/error.h"
 #include "ajar/core/files.h"
@@ -38,7 +40,38 @@ std::vector<Named> read(const AnimateArguments& a, const FrameRange& frames, con
   return out;
 }
 
+// Whether animation.json tells of an animation: a user's keyframes may have that name, too.
+bool has_figures(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const nlohmann::json found = nlohmann::json::parse(file, nullptr, false);
+  return found.is_object() && found.contains("frames_done");
+}
+
+// Whether a table or plot begins as those of figures do.
+bool begins_as_figures(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string line;
+  std::getline(file, line);
+  if (path.ends_with(".csv")) return line.starts_with("frame,") && line.ends_with(",flicker");
+  return line.starts_with("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 700 500'");
+}
+
 }  // namespace
+
+void check_figures(const std::string& stem) {
+  const std::string figures = stem + ".json";
+  const bool known = is_file(figures) && has_figures(figures);  // is written before the others
+  for (const char* extension : {".json", ".csv", ".svg"}) {
+    const std::string path = stem + extension;
+    std::error_code unknown;
+    if (known || !is_file(path) || fs::file_size(path, unknown) == 0) continue;
+    if (path == figures || !begins_as_figures(path))
+      throw Error(
+          fmt::format("{}: holds no figures of an animation, which would take its place; move it, or write the "
+                      "frames to another folder",
+                      path));
+  }
+}
 
 void check_apart(const AnimateArguments& a, const FrameRange& frames, const Scene& scene, const LoadCache& cache) {
   require_apart(written(a, frames), read(a, frames, scene, cache));

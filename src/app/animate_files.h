@@ -14,6 +14,8 @@ void check_apart(const AnimateArguments&, const FrameRange&, const Scene&, const
 void check_files(const AnimateArguments&, int frame);
 /// The same of all frames, but tries nothing unless there is a folder of the name, or what else is no file.
 void check_no_folders(const AnimateArguments&, const FrameRange&);
+/// Throws Error where .json, .csv or .svg of the figures is a file that ajar animate did not write.
+void check_figures(const std::string& stem);
 /// Throws Error unless every frame of the range has its reference, sound and of the frame's size.
 void check_references(const AnimateArguments&, Shooting&);
 

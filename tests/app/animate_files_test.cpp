@@ -160,6 +160,40 @@ TEST_F(AnimateFiles, WhatIsNoRecordIsNotWrittenOver) {
   EXPECT_FALSE(fs::exists(in("shot/f_0.exr")));
 }
 
+// Keyframes of that natural name, a table or a drawing of the user's.
+TEST_F(AnimateFiles, WhatIsNoFigureIsNotWrittenOver) {
+  fs::create_directories(in("shot"));
+  const Words usual = {"--frames", "1", "--spp", "1", "--integrator", "path", "-o", in("shot/f_%d.exr")};
+  const auto refused = [&](const std::string& name, const std::string& text) {
+    write(name, text);
+    EXPECT_SAYS(said(usual), in(name) + ": holds no figures of an animation, which would take its place; move it");
+    EXPECT_EQ(kit::bytes_of(in(name)), text);
+  };
+  for (const char* text : {R"({"frames": 3, "parameters": {}})", "no JSON", "[1, 2]"})
+    refused("shot/animation.json", text);
+  fs::remove(in("shot/animation.json"));
+  refused("shot/animation.csv", "frame,door\n0,5\n"), fs::remove(in("shot/animation.csv"));
+  refused("shot/animation.svg", "<svg xmlns=\"http://www.w3.org/2000/svg\"/>\n"), fs::remove(in("shot/animation.svg"));
+  EXPECT_TRUE(fs::is_empty(in("shot")));
+  write("shot/animation.json", "");
+  EXPECT_EQ(said(usual), "");
+  refused("shot/animation.json", "{}");  // though all frames are there
+}
+
+// Figures of an earlier command are made anew, whichever of their files are there.
+TEST_F(AnimateFiles, FiguresAreMadeAnew) {
+  const Words usual = {"--frames", "2", "--spp", "1", "--integrator", "path", "-o", in("shot/f_%d.exr")};
+  EXPECT_EQ(said(usual), "");
+  for (const char* gone : {"shot/animation.json", "shot/animation.csv", "shot/animation.svg", "shot/f_1.exr"}) {
+    fs::remove(in(gone));
+    EXPECT_EQ(said(usual), "") << gone;
+    EXPECT_TRUE(fs::exists(in(gone)));
+  }
+  write("shot/animation.csv", "changed by hand");
+  EXPECT_EQ(said(usual), "");
+  EXPECT_EQ(kit::bytes_of(in("shot/animation.csv")).substr(0, 14), "frame,seconds,");
+}
+
 // Key by key a parameter may be what the scene takes; between keys it need not be.
 TEST_F(AnimateFiles, AnErrorInTheMiddleLeavesFigures) {
   put(R"(<default name="depth" value="9"/>
