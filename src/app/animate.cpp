@@ -47,7 +47,8 @@ struct Work {
   int width = 0, height = 0;  // of frame 0
   SequenceOptions sequence;
   std::string options_key;  // of the whole animation, without budgets
-  std::string key;          // the same with the files of its first frame
+  std::string key;          // the same with the files of its first frame, and whether lessons have a time limit
+  std::string other_key;    // the same of lessons with one where these have none, or the other way round
   bool carries = false;     // fields
   bool lost = false;        // fields for a later command: they could not be written
   std::optional<Carried> carried;
@@ -254,6 +255,20 @@ bool is_of_these_files(Work& w, const Carried& carried) {
   return files == carried.files;
 }
 
+// Says why the frames from one on to those that are to be rendered are learned again.
+void tell_learned_again(const Work& w, int frame) {
+  if (w.arguments.quiet) return;
+  const int next = w.to_do.front();
+  std::string why = "none of them left any here that go with this scene and these options";
+  const auto is_of_them = [&](const Carried& c) { return int(c.frame) >= frame; };
+  if (const auto other = find_carried(w.folder, w.other_key, next - 1, is_of_them)) {
+    const bool in_time = has_time_limit(w.options);
+    why = fmt::format("those that frame {} left here were learned {} a time limit, these are {} one", other->frame,
+                      in_time ? "without" : "with", in_time ? "with" : "without");
+  }
+  say(stderr, "ajar: note: the fields of frames {} to {} are learned again: {}\n", frame, next - 1, why);
+}
+
 // From the first frame whose fields are needed to the last that is missing.
 void render_frames(Work& w) {
   const bool taught = is_guided(w.options.integrator) && (w.sequence.coherence.fields || w.sequence.coherence.numbers);
@@ -265,9 +280,7 @@ void render_frames(Work& w) {
         find_carried(w.folder, w.key, frame - 1, [&](const Carried& found) { return is_of_these_files(w, found); });
     frame = w.carried ? int(w.carried->frame) + 1 : 0;
     if (w.carried) before = Stage{load_frame(w.shooting, int(w.carried->frame)), {}, {}, {}};
-    if (frame < w.to_do.front() && !w.arguments.quiet)
-      say(stderr, "ajar: note: the fields of frames {} to {} are learned again: no frame before {} left any here\n",
-          frame, w.to_do.front() - 1, w.to_do.front());
+    if (frame < w.to_do.front()) tell_learned_again(w, frame);
   }
   for (; frame <= w.to_do.back(); ++frame) {
     const bool wanted = std::binary_search(w.to_do.begin(), w.to_do.end(), frame);
@@ -348,9 +361,11 @@ Work prepare(const AnimateArguments& a) {
   w.options_key = animation_key(w, *zero);
   // What all frames have by the user's word each may have otherwise by the scene's. Lessons that time cut short are
   // others than whole ones.
-  const bool in_time = has_time_limit(w.options);
-  w.key = fmt::format("{},{}{}{}{}", w.options_key, files_key(*zero), a.max_depth == not_given ? "" : ",one depth",
-                      a.size.empty() ? "" : ",one size", in_time ? ",in time" : "");
+  const auto key = [&](bool in_time) {
+    return fmt::format("{},{}{}{}{}", w.options_key, files_key(*zero), a.max_depth == not_given ? "" : ",one depth",
+                       a.size.empty() ? "" : ",one size", in_time ? ",in time" : "");
+  };
+  w.key = key(has_time_limit(w.options)), w.other_key = key(!has_time_limit(w.options));
   check_references(a, w.shooting);
   const fs::path folder = fs::path(frame_name(w.pattern, 0)).parent_path();
   w.folder = folder.empty() ? "." : folder.string();

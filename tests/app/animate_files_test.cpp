@@ -151,6 +151,28 @@ TEST_F(AnimateFiles, FieldsAreOfTheFilesThatTaughtThem) {
   EXPECT_FALSE(read_picture(in("same/f_2.exr")).pixels == read_picture(in("new/f_2.exr")).pixels);
 }
 
+TEST_F(AnimateFiles, WhyFieldsAreLearnedAgainIsTold) {
+  const auto told = [&](const char* range, const std::string& shot, Words more = {}) {
+    more.insert(more.begin(), {"animate", in("room.xml"), "--frames", range, "--integrator", "guided-path", "--teach",
+                               "1", "-D", "door=0..1", "-o", in(shot + "/f_%d.exr")});
+    testing::internal::CaptureStderr();
+    run_command_line(more);
+    return testing::internal::GetCapturedStderr();
+  };
+  const Words spp = {"--spp", "1"}, time = {"--spp", "1", "--cpu-time", "100"};
+  const std::string again = "the fields of frames 0 to 1 are learned again: ";
+  EXPECT_SAYS(told("2/5", "none", spp), again + "none of them left any here that go with");
+  told("0-1/5", "whole", spp), told("0-1/5", "timed", time);
+  fs::copy(in("whole"), in("same"));
+  EXPECT_EQ(told("2/5", "same", spp).find("learned again"), std::string::npos);
+  EXPECT_SAYS(told("2/5", "whole", time),
+              again + "those that frame 1 left here were learned without a time limit, these are with one\n");
+  EXPECT_SAYS(told("2/5", "timed", spp),
+              again + "those that frame 1 left here were learned with a time limit, these are without one\n");
+  EXPECT_SAYS(told("4/5", "same", spp),
+              "the fields of frames 3 to 3 are learned again: none of them left any here that go with");
+}
+
 TEST_F(AnimateFiles, WhatIsNoRecordIsNotWrittenOver) {
   fs::create_directories(in("shot"));
   write("shot/f_1.json", "{}");
