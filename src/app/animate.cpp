@@ -336,6 +336,28 @@ void write_figures_so_far(const Work& w) {
   }
 }
 
+// CPU seconds that go into a look ahead: at all frames, and at those where parameters have keys or change sign.
+constexpr double look_seconds = 5, longest_look_seconds = 30;
+
+// Loads the frames, while that is cheap, so that what is wrong with one of them is told before others are rendered.
+// First and last were loaded; the second is, however long that takes: there a parameter that is to be whole may not be.
+void look_ahead(Work& w) {
+  const Timeline& t = w.shooting.timeline;
+  const FrameRange& r = t.frames;
+  if (t.tracks.empty() && !(t.has_time && t.first_time != t.last_time)) return;
+  const double began = process_cpu_seconds();
+  std::shared_ptr<const Scene> scene;
+  for (const int frame : w.to_do) {
+    if (frame == 0 || frame == r.first || frame == r.last) continue;
+    const double spent = process_cpu_seconds() - began;
+    const double limit = frame == r.first + 1 ? infinity : is_marked(t, frame) ? longest_look_seconds : look_seconds;
+    if (spent > limit) continue;
+    scene = load_frame(w.shooting, frame);
+    frame_options(w, frame, *scene);
+  }
+  if (scene) check_apart(w.arguments, r, *scene, w.shooting.cache);
+}
+
 Work prepare(const AnimateArguments& a) {
   Work w{a, {a.scene, a.size, a.lenient, make_timeline(a.frames, a.defines, a.keyframes, a.at), {}}};
   w.pattern = w.png = parse_pattern("-o", a.out);
@@ -343,11 +365,9 @@ Work prepare(const AnimateArguments& a) {
   if (a.fps && a.video.empty()) throw Error("--fps: is of a film; add --video OUT.mp4, or leave it out");
   if (!a.video.empty()) check_video(a.video, a.fps.value_or(usual_fps));
   const FrameRange& r = w.shooting.timeline.frames;
-  // Finds out what times there are, and that both ends can be loaded, and what is between: there a parameter that is
-  // to be whole may not be.
+  // Finds out what times there are, and that both ends can be loaded.
   const std::shared_ptr<const Scene> zero = load_frame(w.shooting, 0), last = load_frame(w.shooting, r.last),
                                      scene = load_frame(w.shooting, r.first);
-  if (!w.shooting.timeline.tracks.empty() && r.first + 1 < r.last) load_frame(w.shooting, r.first + 1);
   for (const auto& one : {zero, scene, last}) check_apart(a, r, *one, w.shooting.cache);
   if (!a.at.empty() && scene->hints.first_time > scene->hints.last_time)
     throw Error(fmt::format("--at {}: nothing in the scene has an <animation>; leave it out", a.at));
@@ -374,6 +394,7 @@ Work prepare(const AnimateArguments& a) {
     if (!is_done(w, f)) w.to_do.push_back(f);
   if (!w.to_do.empty()) check_outputs(w);
   check_figures(figures_stem(w));
+  look_ahead(w);
   return w;
 }
 

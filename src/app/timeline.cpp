@@ -205,7 +205,24 @@ double slope_at(const Track& track, size_t key, size_t value) {
   return before * after > 0 ? 2 * before * after / (before + after) : 0;
 }
 
+int sign_of(double x) { return (x > 0) - (x < 0); }
+
+bool is_marked(const Track& track, int frame) {
+  for (const Track::Key& key : track.keys)
+    if (std::abs(key.frame - frame) < 1) return true;
+  const std::vector<double> before = values_at(track, frame - 1), here = values_at(track, frame),
+                            after = values_at(track, frame + 1);
+  for (size_t k = 0; k < here.size(); ++k)
+    if (sign_of(here[k]) != sign_of(before[k]) || sign_of(here[k]) != sign_of(after[k])) return true;
+  return false;
+}
+
 }  // namespace
+
+bool is_marked(const Timeline& timeline, int frame) {
+  return std::any_of(timeline.tracks.begin(), timeline.tracks.end(),
+                     [&](const auto& named) { return is_marked(named.second, frame); });
+}
 
 Timeline make_timeline(const std::string& frames, const std::vector<std::string>& defines, const std::string& keyframes,
                        const std::string& at) {

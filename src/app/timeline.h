@@ -42,6 +42,9 @@ Timeline make_timeline(const std::string& frames, const std::vector<std::string>
                        const std::string& at);
 /// The parameters at a frame, as the scene's loader takes them.
 std::map<std::string, std::string> parameters_at(const Timeline& timeline, int frame);
+/// Whether a parameter has a key at the frame or between it and one beside it, or changes its sign there. Between such
+/// frames values neither turn nor pass zero.
+bool is_marked(const Timeline& timeline, int frame);
 /// Values of a track at a frame: before the first key and after the last they rest.
 std::vector<double> values_at(const Track& track, double frame);
 

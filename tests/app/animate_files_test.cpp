@@ -216,12 +216,34 @@ TEST_F(AnimateFiles, FiguresAreMadeAnew) {
   EXPECT_EQ(kit::bytes_of(in("shot/animation.csv")).substr(0, 14), "frame,seconds,");
 }
 
-// Key by key a parameter may be what the scene takes; between keys it need not be.
+// Both ends of a sweep may be what the scene takes; between them it need not be.
+TEST_F(AnimateFiles, ErrorsInTheMiddleAreToldBeforeTheWork) {
+  put(R"(<default name="depth" value="9"/><default name="size" value="1"/>
+    <integrator type="path"><integer name="max_depth" value="$depth"/></integrator>
+    <shape type="cube"><transform name="to_world"><scale value="$size"/></transform></shape>)");
+  write("keys.json", R"({"frames": 6, "parameters": {"depth": [[0, 2], [3, 2], [5, 3]]}})");
+  EXPECT_SAYS(said({"--spp", "1", "--keyframes", in("keys.json"), "-o", in("shot/f_%d.exr")}), " (frame 4: depth=2.5)");
+  const auto sweep = [&](const char* frames, const char* what) {
+    return said({"--spp", "1", "--frames", frames, "-D", what, "-o", in("shot/f_%d.exr")});
+  };
+  EXPECT_SAYS(sweep("7", "size=0.3..-0.3"), "its to_world is singular");
+  EXPECT_SAYS(sweep("7", "size=0.3..-0.3"), " (frame 3: size=0)");
+  EXPECT_SAYS(sweep("5", "depth=-1..3"), " (frame 1: depth=0)");
+  EXPECT_FALSE(fs::exists(in("shot")));
+  EXPECT_EQ(sweep("4-6/7", "size=0.3..-0.3"), "") << "frames of the range alone";
+  put(R"(<shape type="cube"><animation name="to_world"><transform time="0"><scale x="0.5"/></transform>
+    <transform time="2"><scale x="-0.5"/></transform></animation></shape>)");
+  EXPECT_SAYS(said({"--spp", "1", "--frames", "5", "-o", in("moves/f_%d.exr")}), " (frame 2: time=1)");
+  EXPECT_FALSE(fs::exists(in("moves")));
+}
+
+// Where a disk is full, say.
 TEST_F(AnimateFiles, AnErrorInTheMiddleLeavesFigures) {
-  put(R"(<default name="depth" value="9"/>
-    <integrator type="path"><integer name="max_depth" value="$depth"/></integrator>)");
-  write("keys.json", R"({"frames": 5, "parameters": {"depth": [[0, 2], [2, 2], [4, 3]]}})");
-  EXPECT_SAYS(said({"--spp", "1", "--keyframes", in("keys.json"), "-o", in("shot/f_%d.exr")}), " (frame 3: depth=2.5)");
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
+  fs::create_directories(in("shot"));
+  fs::create_symlink("/dev/full", in("shot/f_3.png"));
+  EXPECT_SAYS(said({"--spp", "1", "--frames", "5", "--integrator", "path", "-o", in("shot/f_%d.exr")}),
+              "f_3.png: cannot be written (No space left");
   EXPECT_EQ(record("shot/animation.json")["frames_done"], 3);
 }
 

@@ -50,6 +50,19 @@ TEST(Timeline, SmoothOnesEaseInAndOut) {
   EXPECT_GT(values_at(rising, 4.1)[0] - values_at(rising, 3.9)[0], 0.05);
 }
 
+TEST(Timeline, FramesAtKeysAndAtZeroAreMarked) {
+  const auto marked = [](const Timeline& t) {
+    std::vector<int> out;
+    for (int f = 0; f < t.frames.count; ++f)
+      if (is_marked(t, f)) out.push_back(f);
+    return out;
+  };
+  EXPECT_EQ(marked(make_timeline("11", {"x=1..9", "y=a"}, "", "")), std::vector<int>({0, 10}));
+  EXPECT_EQ(marked(make_timeline("11", {"x=5..-5:smooth"}, "", "")), std::vector<int>({0, 4, 5, 6, 10}));
+  EXPECT_EQ(marked(make_timeline("10", {"x=5 1..-5 1"}, "", "")), std::vector<int>({0, 4, 5, 9}));
+  EXPECT_EQ(marked(make_timeline("12", {"x=1..2..1"}, "", "")), std::vector<int>({0, 5, 6, 11}));
+}
+
 TEST(Timeline, RangesArePartsOfTheWhole) {
   const Timeline part = make_timeline("10-20/48", {"x=0..47"}, "", "");
   EXPECT_EQ(part.frames.first, 10);
