@@ -43,8 +43,10 @@ struct Work {
   Shooting shooting;
   FramePattern pattern, png;
   std::string folder;
-  RenderOptions options;      // of frame 0, whichever frames are to be rendered; see frame_options
-  int width = 0, height = 0;  // of frame 0
+  RenderOptions options;                  // of frame 0, whichever frames are to be rendered; see frame_options
+  int width = 0, height = 0;              // of frame 0
+  int first_width = 0, first_height = 0;  // of the range's first frame
+  std::string other_size;                 // of the first of them that was seen to have another; for messages
   SequenceOptions sequence;
   std::string options_key;  // of the whole animation, without budgets
   std::string key;          // the same with the files of its first frame, and whether lessons have a time limit
@@ -98,6 +100,20 @@ std::string frame_key(const Work& w, int frame, const Scene& scene) {
   return key;
 }
 
+// Sizes may change from frame to frame; a film has one.
+void note_size(Work& w, int frame, const Scene& scene) {
+  const int width = scene.camera.crop_width, height = scene.camera.crop_height;
+  if (!w.other_size.empty() || (width == w.first_width && height == w.first_height)) return;
+  w.other_size = fmt::format("frame {} is {}x{}, frame {} {}x{}", w.shooting.timeline.frames.first, w.first_width,
+                             w.first_height, frame, width, height);
+}
+
+void require_one_size(const Work& w) {
+  if (w.arguments.video.empty() || w.other_size.empty()) return;
+  throw Error(fmt::format("--video {}: {}, and frames of a film have one size; add --size, or leave --video out",
+                          w.arguments.video, w.other_size));
+}
+
 // Whether the frame is there as it should be; a PNG that is missing is made again.
 bool is_done(Work& w, int frame) {
   const std::string path = frame_name(w.pattern, frame);
@@ -105,7 +121,9 @@ bool is_done(Work& w, int frame) {
   const Picture image = read_frame(path);
   const Metadata metadata = read_metadata(path);
   const auto found = metadata.find("ajar:frame");
-  const std::string here = frame_key(w, frame, *load_frame(w.shooting, frame));
+  const std::shared_ptr<const Scene> scene = load_frame(w.shooting, frame);
+  note_size(w, frame, *scene);
+  const std::string here = frame_key(w, frame, *scene);
   const auto* there = found == metadata.end() ? nullptr : std::get_if<std::string>(&found->second);
   if (there && *there == here) {
     if (const std::string png = frame_name(w.png, frame); !is_file(png)) write_png(png, image);
@@ -287,6 +305,7 @@ void render_frames(Work& w) {
     if (!wanted && !w.carries) continue;
     Stage stage = set_up(w.shooting, frame, before ? &*before : nullptr);
     if (wanted) tell_notes(w, frame, *stage.scene);
+    if (wanted) note_size(w, frame, *stage.scene);
     if (wanted) check_apart(w.arguments, {frame, frame, count}, *stage.scene, w.shooting.cache);
     const Lessons lessons = taught ? teach_frame(w, frame, stage) : Lessons{};
     if (wanted) {
@@ -309,6 +328,7 @@ void check_outputs(const Work& w) {
 void write_film(const Work& w) {
   const AnimateArguments& a = w.arguments;
   if (a.video.empty()) return;
+  require_one_size(w);
   make_video(w.png, w.shooting.timeline.frames, a.fps.value_or(usual_fps), a.video);
   if (!a.quiet) say(stdout, "{}\n", a.video);
 }
@@ -353,7 +373,7 @@ void look_ahead(Work& w) {
     const double limit = frame == r.first + 1 ? infinity : is_marked(t, frame) ? longest_look_seconds : look_seconds;
     if (spent > limit) continue;
     scene = load_frame(w.shooting, frame);
-    frame_options(w, frame, *scene);
+    frame_options(w, frame, *scene), note_size(w, frame, *scene);
   }
   if (scene) check_apart(w.arguments, r, *scene, w.shooting.cache);
 }
@@ -375,7 +395,8 @@ Work prepare(const AnimateArguments& a) {
   w.noted.insert(scene->notes.begin(), scene->notes.end());
   w.options = render_options(a, *zero);
   w.width = zero->camera.crop_width, w.height = zero->camera.crop_height;
-  frame_options(w, r.first, *scene), frame_options(w, r.last, *last);
+  w.first_width = scene->camera.crop_width, w.first_height = scene->camera.crop_height;
+  frame_options(w, r.first, *scene), frame_options(w, r.last, *last), note_size(w, r.last, *last);
   w.sequence = sequence_options(a);
   w.carries = w.sequence.coherence.fields && is_guided(w.options.integrator);
   w.options_key = animation_key(w, *zero);
@@ -395,6 +416,7 @@ Work prepare(const AnimateArguments& a) {
   if (!w.to_do.empty()) check_outputs(w);
   check_figures(figures_stem(w));
   look_ahead(w);
+  require_one_size(w);
   return w;
 }
 

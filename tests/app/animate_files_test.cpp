@@ -406,6 +406,32 @@ TEST_F(AnimateFiles, FilmsMayLieBesideTheirFrames) {
   ::setenv("PATH", path.c_str(), 1);
 }
 
+TEST_F(AnimateFiles, FramesOfAFilmHaveOneSize) {
+  const std::string path = std::getenv("PATH");
+  ::setenv("PATH", folder.c_str(), 1);
+  write("ffmpeg", "#!/bin/sh\nfor last; do :; done\necho \"$@\" > \"$last\"\n");
+  fs::permissions(in("ffmpeg"), fs::perms::owner_all);
+  put(R"(<default name="wide" value="16"/>)");
+  std::string room = kit::bytes_of(in("room.xml"));
+  const std::string width = R"(name="width" value="16")";
+  write("room.xml", room.replace(room.find(width), width.size(), R"(name="width" value="$wide")"));
+  write("keys.json", R"({"frames": 6, "parameters": {"wide": [[0, 8], [1, 16], [2, 16], [3, 18], [4, 16], [5, 16]]}})");
+  const auto film = [&](const char* frames, Words more = {}) {
+    more.insert(more.end(), {"--frames", frames, "--keyframes", in("keys.json"), "--spp", "1", "--integrator", "path",
+                             "-o", in("shot/f_%d.exr"), "--video", in("film.mp4")});
+    return said(more);
+  };
+  EXPECT_EQ(film("1-4"), "--video " + in("film.mp4") + ": frame 1 is 16x12, frame 3 18x12, and frames of a film have " +
+                             "one size; add --size, or leave --video out");
+  EXPECT_FALSE(fs::exists(in("shot"))) << "told before the work";
+  EXPECT_EQ(film("1-2"), "") << "another size than frame 0 has";
+  EXPECT_EQ(film("4-5"), "");
+  EXPECT_SAYS(film("0-2"), "frame 0 is 8x12, frame 2 16x12");
+  fs::remove_all(in("shot"));
+  EXPECT_EQ(film("1-4", {"--size", "10x8"}), "");
+  ::setenv("PATH", path.c_str(), 1);
+}
+
 TEST_F(AnimateFiles, FilmsHaveKnownNames) {
   for (const char* name : {"film", "film.exr", "film.mp3"})
     EXPECT_SAYS(said({"--frames", "2", "--spp", "1", "-o", in("f_%d.exr"), "--video", in(name)}),
