@@ -9,6 +9,7 @@
 #include "ajar/core/error.h"
 #include "ajar/core/sampler.h"
 #include "ajar/scene/cutout.h"
+#include "ids.h"
 #include "quadric.h"
 
 namespace ajar {
@@ -16,7 +17,8 @@ namespace {
 
 struct Quadric {
   const Shape* shape;
-  uint32_t id;
+  uint32_t index;      // among the scene's shapes
+  uint32_t geometry;   // what the ray tracer knows it by
   const Scene* scene;  // of a shape with masks; else null
 };
 struct CutOut {
@@ -80,7 +82,7 @@ bool hit_quadric(const Quadric& quadric, const RTCRay& ray, double& t, glm::dvec
   for (double from = ray.tnear; intersect_quadric(shape.kind, o, d, from, ray.tfar, t, p); from = t) {
     if (!quadric.scene) return true;
     const Vec3 origin(ray.org_x, ray.org_y, ray.org_z), direction(ray.dir_x, ray.dir_y, ray.dir_z);
-    if (stops(*quadric.scene, origin, direction, quadric.id, 0, quadric_uv(shape.kind, p))) return true;
+    if (stops(*quadric.scene, origin, direction, quadric.index, 0, quadric_uv(shape.kind, p))) return true;
   }
   return false;
 }
@@ -95,7 +97,7 @@ void quadric_intersect(const RTCIntersectFunctionNArguments* args) {
   const Vec2 uv = quadric_uv(quadric.shape->kind, p);
   rayhit.ray.tfar = float(t);
   rayhit.hit.u = uv.x, rayhit.hit.v = uv.y;
-  rayhit.hit.primID = 0, rayhit.hit.geomID = quadric.id;
+  rayhit.hit.primID = 0, rayhit.hit.geomID = quadric.geometry;
   rayhit.hit.instID[0] = args->context->instID[0];
 }
 
@@ -116,7 +118,8 @@ struct Accel::Data {
   std::vector<Quadric> quadrics;
   std::vector<CutOut> cut_outs;
   std::vector<uint64_t> sizes;
-  size_t instances = 0;
+  std::vector<uint32_t> grouped;         // shapes in groups, group by group
+  std::vector<uint32_t> instance_first;  // by instance: where its group's begin among them
   std::atomic<int64_t> bytes{0};
 };
 
@@ -197,7 +200,8 @@ bool count_bytes(void* data, ssize_t bytes, bool) {
 Accel::Accel(const Scene& scene) : data_(std::make_unique<Data>()), first_instance_(uint32_t(scene.shapes.size())) {
   require_finished(scene);
   Data& data = *data_;
-  data.sizes = sizes_of(scene), data.instances = scene.instances.size();
+  data.sizes = sizes_of(scene);
+  GeometryIds ids = number_geometries(scene);
   data.device.reset(rtcNewDevice(nullptr));
   if (!data.device) refuse(nullptr, "cannot start");
   RTCDevice device = data.device.get();
@@ -210,18 +214,21 @@ Accel::Accel(const Scene& scene) : data_(std::make_unique<Data>()), first_instan
     RTCScene into = shape.group == none ? data.top.get() : data.groups[shape.group].get();
     if (is_open(scene, shape)) continue;
     if (shape.kind != ShapeKind::mesh) {
-      data.quadrics.push_back({&shape, i, shape.mask == none ? nullptr : &scene});
-      attach(into, quadric_geometry(device, &data.quadrics.back()), i);
+      data.quadrics.push_back({&shape, i, ids.of_shape[i], shape.mask == none ? nullptr : &scene});
+      attach(into, quadric_geometry(device, &data.quadrics.back()), ids.of_shape[i]);
     } else if (!scene.meshes[shape.mesh].triangles.empty()) {
       RTCGeometry g = mesh_geometry(device, scene.meshes[shape.mesh]);
       if (shape.mask != none) set_filter(g, data.cut_outs.emplace_back(CutOut{&scene, i}));
-      attach(into, g, i);
+      attach(into, g, ids.of_shape[i]);
     }
   }
   for (auto& group : data.groups) rtcCommitScene(group.get());
-  for (uint32_t i = 0; i < scene.instances.size(); ++i)
-    attach(data.top.get(), instance_geometry(device, data.groups[scene.instances[i].group].get(), scene.instances[i]),
-           first_instance_ + i);
+  for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const Instance& instance = scene.instances[i];
+    data.instance_first.push_back(ids.first[instance.group]);
+    attach(data.top.get(), instance_geometry(device, data.groups[instance.group].get(), instance), first_instance_ + i);
+  }
+  data.grouped = std::move(ids.shapes);
   rtcCommitScene(data.top.get());
   if (rtcGetDeviceError(device) != RTC_ERROR_NONE) refuse(device, "cannot build");
   top_ = data.top.get();
@@ -233,7 +240,7 @@ Accel::Accel(Accel&&) noexcept = default;
 Accel& Accel::operator=(Accel&&) noexcept = default;
 
 bool Accel::fits(const Scene& scene) const {
-  return data_ && data_->instances == scene.instances.size() && data_->sizes == sizes_of(scene);
+  return data_ && data_->instance_first.size() == scene.instances.size() && data_->sizes == sizes_of(scene);
 }
 
 size_t Accel::bytes() const { return size_t(std::max<int64_t>(data_->bytes.load(), 0)); }
@@ -261,9 +268,9 @@ bool Accel::intersect(const Vec3& o, const Vec3& d, float t_min, float t_max, Hi
   rtcIntersect1(static_cast<RTCScene>(top_), &context, &r);
   if (r.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
   hit.t = r.ray.tfar * stretch_;
-  hit.shape = r.hit.geomID;
   hit.prim = r.hit.primID;
   hit.instance = r.hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? none : r.hit.instID[0] - first_instance_;
+  hit.shape = hit.instance == none ? r.hit.geomID : data_->grouped[data_->instance_first[hit.instance] + r.hit.geomID];
   hit.bary = {r.hit.u, r.hit.v};
   return true;
 }

@@ -8,6 +8,8 @@
 #include <optional>
 #include <random>
 
+#include "accel/ids.h"
+
 namespace ajar {
 namespace {
 
@@ -303,6 +305,43 @@ TEST(Accel, InstancedQuadric) {
   EXPECT_EQ(hit.instance, 0u);
   EXPECT_EQ(hit.shape, 0u);
   EXPECT_FALSE(accel.intersect(Vec3(0, 10, 0), Vec3(0, -1, 0), 0, infinity, hit));
+}
+
+// The ray tracer holds memory for every number up to a group's largest: with those of the whole scene thousands of
+// groups would take gigabytes.
+TEST(Accel, GroupsCountTheirShapesFromZero) {
+  Scene scene;
+  scene.groups = 3;
+  for (const uint32_t group : {none, 2u, 0u, none, 2u, 0u, 2u}) add_quadric(scene, ShapeKind::sphere, Mat4(1), group);
+  const GeometryIds ids = number_geometries(scene);
+  EXPECT_EQ(ids.of_shape, (std::vector<uint32_t>{0, 0, 0, 3, 1, 1, 2}));
+  EXPECT_EQ(ids.first, (std::vector<uint32_t>{0, 2, 2}));
+  EXPECT_EQ(ids.shapes, (std::vector<uint32_t>{2, 5, 1, 4, 6}));
+}
+
+TEST(Accel, HitsNameTheShapesOfAnyGroup) {
+  Random random{std::mt19937_64(7)};
+  Scene scene;
+  scene.groups = 2;
+  const auto at = [](float x) { return glm::translate(Mat4(1), Vec3(x, 0, 0)); };
+  add_quadric(scene, ShapeKind::sphere, at(0));
+  add_quadric(scene, ShapeKind::sphere, at(0), 1);
+  add_mesh(scene, transformed(ball(2, 0, random), at(0)), 0);
+  add_mesh(scene, transformed(ball(2, 0, random), at(3)), 1);
+  add_quadric(scene, ShapeKind::disk, at(3), 0);
+  for (const uint32_t group : {0u, 1u}) scene.instances.push_back({group, at(10 - 20.0f * float(group)), Mat4(1)});
+  const Accel accel(finished(scene));
+  const std::pair<float, Hit> expected[] = {{0, {.shape = 0, .instance = none}},
+                                            {-10, {.shape = 1, .instance = 1}},
+                                            {10, {.shape = 2, .instance = 0}},
+                                            {-7, {.shape = 3, .instance = 1}},
+                                            {13, {.shape = 4, .instance = 0}}};
+  for (const auto& [x, there] : expected) {
+    Hit hit;
+    ASSERT_TRUE(accel.intersect(Vec3(x + 0.1f, 0.2f, 5), Vec3(0, 0, -1), 0, infinity, hit)) << x;
+    EXPECT_EQ(hit.shape, there.shape) << x;
+    EXPECT_EQ(hit.instance, there.instance) << x;
+  }
 }
 
 // Rays from within to points on the edges of a closed mesh: none may escape. Exactly at a vertex Embree's robust mode

@@ -104,6 +104,21 @@ TEST(CutOut, InstancesHaveTheirMasks) {
   EXPECT_NEAR(stopped(Accel(scene), {5, 0}, {6, 1}), 0.4, 0.012);
 }
 
+TEST(CutOut, QuadricsInGroupsHaveTheirMasks) {
+  Scene scene;
+  const uint32_t solid = add_diffuse(scene, Rgb(0.5f));
+  add_sphere(scene, Vec3(0), 1, solid);
+  add_sphere(scene, Vec3(0), 1, masked(scene, 0.4f, solid));
+  scene.groups = 1;
+  scene.shapes[1].group = 0;
+  Instance instance;
+  instance.to_world = glm::translate(Mat4(1), Vec3(5, 0, 0));
+  instance.to_object = glm::inverse(instance.to_world);
+  scene.instances.push_back(instance);
+  finish(scene);
+  EXPECT_NEAR(stopped(Accel(scene), {4.5f, -0.5f}, {5.5f, 0.5f}), 1 - 0.6 * 0.6, 0.012);
+}
+
 TEST(CutOut, MasksOfMasksMultiply) {
   Scene scene;
   const uint32_t inner = add_diffuse(scene, Rgb(0.5f));
