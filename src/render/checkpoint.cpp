@@ -131,6 +131,24 @@ void read_image(Reader& r, RenderState& state) {
   if (!state.pyramid.kept) state.pyramid = {};
 }
 
+// A film's place and filter, which are not in the file, without its arrays.
+Film frame_of(const Film& film) {
+  Film frame;
+  frame.x0 = film.x0, frame.y0 = film.y0, frame.width = film.width, frame.height = film.height;
+  frame.filter = film.filter, frame.splats = film.splats;
+  return frame;
+}
+
+// What a file of this state has to agree with, and what is not in it.
+RenderState frame_of(const RenderState& state) {
+  RenderState frame;
+  frame.integrator = state.integrator;
+  frame.film = frame_of(state.film);
+  frame.pyramid.kept = state.pyramid.kept;
+  frame.learning = state.learning;
+  return frame;
+}
+
 // What decides how the next passes are traced, but for what is learned.
 void read_steering(Reader& r, RenderState& state) {
   const size_t pixels = state.film.pixels();
@@ -143,8 +161,7 @@ void read_steering(Reader& r, RenderState& state) {
   r.require(state.balance.found.empty() || state.balance.found.size() == pixels);
   adaptive_fields(r, state.adaptive);
   r.require(is_sound(state.adaptive, pixels));
-  // For their place and filter, which are not in the file.
-  state.plain.guided.film = state.plain.with_merging.film = state.film;
+  state.plain.guided.film = state.plain.with_merging.film = frame_of(state.film);
   plain_fields(r, state.plain);
   r.require(state.plain.seen.half.size() == state.plain.seen.sum.size());
   r.require(is_sound(state.plain.adaptive, pixels));
@@ -181,7 +198,7 @@ std::string read_checkpoint_key(const std::string& path) {
 void load_checkpoint(const std::string& path, const std::string& key, RenderState& state) {
   Reader r(path, checkpoint_kind);
   check_made_for(r, key, state.integrator);
-  RenderState stored = state;
+  RenderState stored = frame_of(state);
   read_image(r, stored);
   read_steering(r, stored);
   read(r, stored.learning);

@@ -208,6 +208,36 @@ TEST(Determinism, DamagedOrForeignCheckpointsAreErrors) {
   }
 }
 
+// Large images would not fit otherwise: those set aside are mostly none.
+TEST(Determinism, CheckpointsBringNoFilmThatIsNotThere) {
+  const Scene scene = strip(false);
+  const RenderOptions o = options_of("bdpt", 1);
+  const RenderState saved = rendered(scene, Accel(scene), o);
+  const File file("ajar_one_film");
+  save_checkpoint(file.path, "key", saved);
+  RenderState state = start_render(scene, o);
+  load_checkpoint(file.path, "key", state);
+  EXPECT_EQ(state.film.camera_sum, saved.film.camera_sum);
+  for (const Film* film : {&state.plain.guided.film, &state.plain.with_merging.film})
+    for (const auto* sums : {&film->camera_sum, &film->splat_sum, &film->half_sum, &film->square_sum})
+      EXPECT_EQ(sums->capacity(), 0u);
+}
+
+TEST(Determinism, CheckpointsThatFailLeaveTheStateAsItWas) {
+  const Scene scene = strip(true);
+  const Accel accel(scene);
+  RenderOptions o = options_of("guided-bdpt", 2);
+  const File file("ajar_failing");
+  save_checkpoint(file.path, "key", rendered(scene, accel, o));
+  std::filesystem::resize_file(file.path, std::filesystem::file_size(file.path) - 1);
+  o.spp = 1;
+  RenderState state = rendered(scene, accel, o);
+  const RenderState before = state;
+  EXPECT_THROW(load_checkpoint(file.path, "key", state), Error);
+  expect_same_bytes(state, before);
+  EXPECT_EQ(state.film.filter.radius, before.film.filter.radius);
+}
+
 TEST(Determinism, ACheckpointOfOtherLightsIsNotGoneOnWith) {
   const Scene lamps = many_lights(64, 1, 32);
   Scene room = cornell(32);
