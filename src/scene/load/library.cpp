@@ -51,20 +51,22 @@ std::vector<std::string> find_libraries(Params& p, const std::string& obj, const
 
 struct Library {
   std::string path;
-  MtlFile file;
+  std::shared_ptr<const MtlFile> file;
 };
 
-Library read_library(Params& p, const std::string& path) {
+// Thousands of shapes may be groups of one obj: its libraries are read once.
+Library open_library(Params& p, const std::string& path) {
   count_file(p.loader, p.node, path);
-  Library library{path, {}};
+  std::shared_ptr<const MtlFile>& kept = p.loader.mtls[path];
+  if (kept) return {path, kept};
   try {
-    library.file = parse_mtl(read_bytes(path), path);
+    kept = std::make_shared<const MtlFile>(parse_mtl(read_bytes(path), path));
   } catch (const Error& error) {
     fail(p.loader, p.node, error.what());
   }
-  if (!library.file.unread.empty())
-    note(p.loader, p.node, fmt::format("{}: not used: {}", path, fmt::join(library.file.unread, ", ")));
-  return library;
+  if (!kept->unread.empty())
+    note(p.loader, p.node, fmt::format("{}: not used: {}", path, fmt::join(kept->unread, ", ")));
+  return {path, kept};
 }
 
 // What map_Kd and others name; otherwise where they name nothing, or what is not there. Heights (ratio) are raw.
@@ -226,15 +228,14 @@ void add_library_parts(Params& p, std::vector<MeshPart>& parts) {
   if (obj == nullptr) return;
   std::vector<Library> libraries;
   for (const std::string& line : obj->libraries)
-    for (const std::string& found : find_libraries(p, path, line)) libraries.push_back(read_library(p, found));
-  std::map<std::string, std::pair<const Library*, const MtlMaterial*>> known;
-  for (const Library& library : libraries)
-    for (const MtlMaterial& m : library.file.materials) known[m.name] = {&library, &m};
+    for (const std::string& found : find_libraries(p, path, line)) libraries.push_back(open_library(p, found));
   for (const std::string& name : materials_left(p, *obj, parts)) {
-    const auto found = known.find(name);
-    if (found != known.end())
+    // the last that has it counts
+    const auto found = std::find_if(libraries.rbegin(), libraries.rend(),
+                                    [&](const Library& l) { return l.file->by_name.contains(name); });
+    if (found != libraries.rend())
       parts.push_back({name, nullptr, [name](std::string_view m) { return m == name; },
-                       load_material(p, found->second.first->path, *found->second.second)});
+                       load_material(p, found->path, found->file->materials[found->file->by_name.at(name)])});
     else if (!libraries.empty())
       note(p.loader, p.node, fmt::format("{}: no mtllib has the material \"{}\": grey", path, name));
   }

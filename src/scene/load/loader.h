@@ -28,6 +28,7 @@ enum class Colour { reflectance, ratio, emission };
 inline constexpr double index_of_air = 1.000277, index_of_bk7 = 1.5046;
 
 struct ObjFile;
+struct MtlFile;
 
 struct Loader {
   const Document& document;
@@ -43,6 +44,7 @@ struct Loader {
   std::map<std::string, int> mesh_uses;                         ///< shapes that name a file
   std::map<std::string, Mesh> meshes;                           ///< parsed files that more than one shape names
   std::shared_ptr<const ObjFile> obj;                           ///< the last that is more than one mesh
+  std::map<std::string, std::shared_ptr<const MtlFile>> mtls;   ///< parsed material libraries, by path
   std::map<std::string, uint64_t> sums;                         ///< of files
   std::set<std::string> said;                                   ///< notes, each once
   std::vector<int> texture_sizes, material_sizes;               ///< elements of each, with all that is nested

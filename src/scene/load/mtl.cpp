@@ -157,7 +157,8 @@ MtlFile parse_mtl(std::string_view text, const std::string& name) {
     if (in.at_end()) continue;
     const std::string_view keyword = in.word();
     if (keyword == "newmtl") {
-      out.materials.emplace_back().name = read_name(in);
+      const std::string& added = out.materials.emplace_back().name = read_name(in);
+      out.by_name[added] = uint32_t(out.materials.size() - 1);
       continue;
     }
     if (out.materials.empty() || !read_statement(in, keyword, out.materials.back()))

@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "ajar/scene/texture.h"
@@ -32,8 +33,9 @@ struct MtlMaterial {
 };
 
 struct MtlFile {
-  std::vector<MtlMaterial> materials;  ///< the last of a name counts
-  std::set<std::string> unread;        ///< statements that say something Ajar does not use
+  std::vector<MtlMaterial> materials;
+  std::unordered_map<std::string, uint32_t> by_name;  ///< into materials; the last of a name counts
+  std::set<std::string> unread;                       ///< statements that say something Ajar does not use
 };
 
 /// name stands in messages. Throws Error "name:line: ..." where a number is damaged or out of range, or missing.

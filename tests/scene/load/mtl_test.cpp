@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "scene/load/loader.h"
 #include "scene_text.h"
 
 namespace ajar {
@@ -182,6 +183,33 @@ TEST(Library, OneGroupHasItsMaterial) {
   ASSERT_EQ(s.shapes.size(), 1u);
   EXPECT_EQ(material(s, 0).kind, MaterialKind::conductor);
   EXPECT_EQ(faces(s, 0), 1u);
+}
+
+// Once that is done, nothing is noticed of what becomes of the file.
+TEST(Library, IsParsedOnceForAllShapes) {
+  const std::string library = write_file("once.mtl", "newmtl a\nKd 1 1 1\n");
+  const std::string faces = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\ng b\nf 1 2 3\n";
+  const std::string path = write_file("once.obj", "mtllib " + library + "\n" + faces);
+  const auto group = [&](int i) { return obj(path, fmt::format("<integer name='shapeIndex' value='{}'/>", i)); };
+  const Document document =
+      read_document("<scene version='0.6.0'>" + group(0) + group(1) + "</scene>", ".", "test.xml", {});
+  Loader loader{document};
+  load_shape(loader, document.root.children[0], none);
+  write_file("once.mtl", "newmtl a\nKd no number\n");
+  EXPECT_NO_THROW(load_shape(loader, document.root.children[1], none));
+  ASSERT_EQ(loader.scene.shapes.size(), 2u);
+  EXPECT_RGB(material(loader.scene, 1).reflectance.value, 1, 1, 1, 0);
+}
+
+TEST(Library, TheLastOfANameCounts) {
+  const std::string first = write_file("first.mtl", "newmtl a\nKd 1 1 1\nnewmtl b\nKd 1 1 1\n");
+  const std::string second = write_file("second.mtl", "newmtl a\nKd 1 1 1\nnewmtl a\nKd 0 1 0\n");
+  const std::string faces = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n";
+  const std::string text = "mtllib " + first + "\nmtllib " + second + "\n" + faces;
+  const Scene s = load_inside(obj(write_file("two.obj", text)), {}, "0.6.0");
+  ASSERT_EQ(s.shapes.size(), 2u);
+  EXPECT_RGB(material(s, 0).reflectance.value, 0, 1, 0, 0);
+  EXPECT_RGB(material(s, 1).reflectance.value, 1, 1, 1, 0);
 }
 
 // The defaults are Mitsuba's: without illum no highlight, without Kd black.
