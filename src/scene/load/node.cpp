@@ -18,19 +18,32 @@ namespace {
 namespace fs = std::filesystem;
 constexpr size_t max_text = size_t(1) << 30;  // far beyond any real scene
 
-bool same_but_for_case(const std::string& a, const std::string& b) { return lower(a) == lower(b); }
+// What is in a folder, by names in small letters; of several that differ in capitals the first. Read once: thousands of
+// names of a scene may differ.
+const std::map<std::string, std::string>& listing_of(const Document& document, const fs::path& folder) {
+  const auto [known, added] = document.listings.emplace(folder.string(), std::map<std::string, std::string>());
+  if (!added) return known->second;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const std::string name = it->path().filename().string();
+    known->second.emplace(lower(name), name);
+  }
+  return known->second;
+}
 
 // The file whose name differs in capitals alone, as it is spelt from the folder on; empty if there is none.
-fs::path other_case(const fs::path& folder, const fs::path& name) {
+fs::path other_case(const Document& document, const fs::path& folder, const fs::path& name) {
   fs::path spelt;
   for (const fs::path& part : name) {
     std::error_code error;
-    fs::path found = fs::exists(folder / spelt / part, error) ? part : fs::path();
-    for (fs::directory_iterator it(folder / spelt, error), end; !error && found.empty() && it != end;
-         it.increment(error))
-      if (same_but_for_case(it->path().filename().string(), part.string())) found = it->path().filename();
-    if (found.empty()) return {};
-    spelt /= found;
+    if (!fs::exists(folder / spelt / part, error)) {
+      const auto& listing = listing_of(document, folder / spelt);
+      const auto found = listing.find(lower(part.string()));
+      if (found == listing.end()) return {};
+      spelt /= found->second;
+    } else {
+      spelt /= part;
+    }
   }
   std::error_code ignored;
   return fs::is_regular_file(folder / spelt, ignored) ? spelt : fs::path();
@@ -59,7 +72,7 @@ struct Found {
 Found in_other_capitals(const Document& document, const Node& node, const std::string& name) {
   if (!may_be_name(name)) return {};
   for (const fs::path& folder : where_to_look(document, node))
-    if (const fs::path other = other_case(folder, with_slashes(name)); !other.empty()) return {folder, other};
+    if (const fs::path other = other_case(document, folder, with_slashes(name)); !other.empty()) return {folder, other};
   return {};
 }
 }  // namespace

@@ -30,6 +30,8 @@ struct Document {
   std::vector<uint64_t> sums;  ///< checksums of the texts of the files
   uint64_t content = 0;        ///< checksum of all of them
   bool old = false;            ///< version 0.x, and no to_world in the scene's file: a few defaults differ
+  /// Folders that a name in other capitals was looked for in, kept by find_file: their names by those in small letters.
+  mutable std::map<std::string, std::map<std::string, std::string>> listings;
 };
 
 /// Reads a scene. name stands in messages, folder resolves relative names. Throws Error.

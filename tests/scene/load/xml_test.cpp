@@ -273,6 +273,23 @@ TEST(Files, AreFoundInOtherCapitalsByOldScenesAndInTheWorkingFolder) {
   EXPECT_EQ(s.shapes.size(), 1u);
 }
 
+// What comes into it later is not noticed.
+TEST(Files, FoldersAreListedOnceForOtherCapitals) {
+  const std::filesystem::path folder = testing::TempDir() + "ajar-capitals";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder / "Inner");
+  std::ofstream(folder / "Inner" / "A.obj");
+  std::ofstream(folder / "Inner" / "B.obj");
+  const Document document = read_document("<scene version='0.6.0'/>", folder.string(), "test.xml", {});
+  const auto found = [&](const std::string& name) { return find_file(document, document.root, name); };
+  EXPECT_EQ(found("inner/a.OBJ"), (folder / "Inner" / "A.obj").string());
+  EXPECT_EQ(found("INNER\\b.obj"), (folder / "Inner" / "B.obj").string());
+  std::ofstream(folder / "Inner" / "C.obj");
+  EXPECT_EQ(found("inner/c.obj"), "");
+  EXPECT_EQ(found("Inner/C.obj"), (folder / "Inner" / "C.obj").string());
+  std::filesystem::remove_all(folder);
+}
+
 TEST(Files, PointersOfGitLfsAreTold) {
   const std::string pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n";
   const std::string path = write_file("pointer", pointer),
