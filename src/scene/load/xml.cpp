@@ -22,12 +22,14 @@ constexpr int max_include_depth = 15;
 constexpr size_t max_nodes = 8'000'000;
 constexpr size_t max_value = 1 << 20;
 
+using Parameters = std::map<std::string, std::string, std::less<>>;
+
 struct Reader {
   Document& document;
-  pugi::xml_node root;                            // of the scene's own file
-  std::map<std::string, std::string> parameters;  // from the command line, then what <default> adds
-  std::map<std::string, std::string> later;       // defaults that stand below their use, looked up when one is missing
-  std::set<std::string> looked;                   // files searched for them
+  pugi::xml_node root;           // of the scene's own file
+  Parameters parameters;         // from the command line, then what <default> adds
+  Parameters later;              // defaults that stand below their use, looked up when one is missing
+  std::set<std::string> looked;  // files searched for them
   std::set<std::string> declared, used;
   std::vector<std::string> including;  // canonical paths from the scene to the file being read
   size_t nodes = 0;
@@ -139,13 +141,16 @@ void look_ahead(Reader& r, const pugi::xml_node& xml, int depth) {
   }
 }
 
-// The parameter whose name the text begins with; of several, the longest is meant.
-const std::pair<const std::string, std::string>* parameter_at(const std::map<std::string, std::string>& parameters,
-                                                              std::string_view text) {
-  const std::pair<const std::string, std::string>* found = nullptr;
-  for (const auto& p : parameters)
-    if (text.starts_with(p.first) && (found == nullptr || p.first.size() > found->first.size())) found = &p;
-  return found;
+// The parameter whose name the text begins with; of several, the longest is meant. In order of names it is the last up
+// to the text, or else no longer than what that one has in common with it.
+const Parameters::value_type* parameter_at(const Parameters& parameters, std::string_view text) {
+  for (;;) {
+    const auto above = parameters.upper_bound(text);
+    if (above == parameters.begin()) return nullptr;
+    const Parameters::value_type& last = *std::prev(above);
+    if (text.starts_with(last.first)) return &last;
+    text = {text.begin(), std::mismatch(text.begin(), text.end(), last.first.begin(), last.first.end()).first};
+  }
 }
 
 // Puts in the value of every $name. After \ a dollar is one, but for version 0.x, where that is a folder of Windows.
@@ -353,7 +358,7 @@ Document read_document(const std::string& text, const std::string& folder, const
   const Source source = make_source(expanded, 0, document.folders.front());
   pugi::xml_document xml;
   parse(document, xml, source, name);
-  Reader r{document, xml.document_element(), defines};
+  Reader r{document, xml.document_element(), {defines.begin(), defines.end()}};
   std::error_code ignored;
   r.including.push_back(fs::weakly_canonical(fs::path(name), ignored).string());
   if (std::string_view(r.root.name()) != "scene")
