@@ -176,26 +176,27 @@ const ObjFile* open_with(Params& p, const std::string& path, const char* stateme
   }
 }
 
-// Which of its materials have faces in the shape, by index.
-std::vector<bool> shown_materials(Params& p, const ObjFile& obj) {
-  std::vector<bool> shown(obj.materials.size());
+// Which of its materials have faces in the shape, by index. A group of faces has one.
+std::vector<uint32_t> shown_materials(Params& p, const ObjFile& obj) {
+  std::vector<uint32_t> shown;
+  const int group = obj_group(p);
   try {
-    const auto [begin, end] = faces_of(obj, obj_group(p));
-    for (size_t f = begin; f < end; ++f) shown[obj.faces[f].material] = true;
+    if (group >= 0) return {obj.faces[faces_of(obj, group).first].material};
   } catch (const Error& error) {
     fail(p.loader, p.node, error.what());
   }
+  for (uint32_t i = 0; i < obj.materials.size(); ++i)
+    if (!obj.runs[i].empty()) shown.push_back(i);
   return shown;
 }
 
 // The materials that faces have and no part has yet, in the order of the file.
 std::vector<std::string> materials_left(Params& p, const ObjFile& obj, const std::vector<MeshPart>& parts) {
-  const std::vector<bool> shown = shown_materials(p, obj);
+  std::set<std::string> names = {""};
+  for (const MeshPart& part : parts) names.insert(part.name);
   std::vector<std::string> left;
-  for (size_t i = 1; i < obj.materials.size(); ++i)
-    if (shown[i] &&
-        std::none_of(parts.begin(), parts.end(), [&](const MeshPart& part) { return part.name == obj.materials[i]; }))
-      left.push_back(obj.materials[i]);
+  for (const uint32_t i : shown_materials(p, obj))
+    if (!names.contains(obj.materials[i])) left.push_back(obj.materials[i]);
   return left;
 }
 
@@ -219,7 +220,7 @@ int obj_group(Params& p) {
 
 bool has_material(Params& p, const std::string& name) {
   const ObjFile* obj = open_with(p, file(p, "filename"), "usemtl");
-  return obj != nullptr && std::find(obj->materials.begin() + 1, obj->materials.end(), name) != obj->materials.end();
+  return obj != nullptr && obj->by_name.contains(name);
 }
 
 void add_library_parts(Params& p, std::vector<MeshPart>& parts) {
@@ -234,8 +235,8 @@ void add_library_parts(Params& p, std::vector<MeshPart>& parts) {
     const auto found = std::find_if(libraries.rbegin(), libraries.rend(),
                                     [&](const Library& l) { return l.file->by_name.contains(name); });
     if (found != libraries.rend())
-      parts.push_back({name, nullptr, [name](std::string_view m) { return m == name; },
-                       load_material(p, found->path, found->file->materials[found->file->by_name.at(name)])});
+      parts.push_back(
+          {name, nullptr, {}, load_material(p, found->path, found->file->materials[found->file->by_name.at(name)])});
     else if (!libraries.empty())
       note(p.loader, p.node, fmt::format("{}: no mtllib has the material \"{}\": grey", path, name));
   }

@@ -5,7 +5,7 @@
 
 #include <cstddef>
 #include <fstream>
-#include <functional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -27,14 +27,14 @@ namespace ajar {
 
 /// What the shape element of a scene says about its mesh.
 struct MeshOptions {
-  bool face_normals = false;    ///< no interpolated normals: those of the file are dropped, none are computed
-  bool flip_normals = false;    ///< turns the surface inside out: winding and normals
-  bool flip_v = false;          ///< v becomes 1 - v
-  float max_smooth_angle = -1;  ///< degrees; 0 or more: normals are made anew, edges sharper than this stay sharp
-  /// OBJ: whether to take faces by the name that usemtl gave them (empty before the first); all where it is not set.
-  std::function<bool(std::string_view)> takes_material;
-  bool srgb = false;     ///< PLY: vertex_color is encoded as sRGB; whoever reads it has to decode it
-  bool encoded = false;  ///< PLY: integers of attributes are parts of their type's largest, encoded as sRGB
+  bool face_normals = false;      ///< no interpolated normals: those of the file are dropped, none are computed
+  bool flip_normals = false;      ///< turns the surface inside out: winding and normals
+  bool flip_v = false;            ///< v becomes 1 - v
+  float max_smooth_angle = -1;    ///< degrees; 0 or more: normals are made anew, edges sharper than this stay sharp
+  std::string material;           ///< OBJ: the faces under this usemtl alone; empty: all
+  std::set<std::string> without;  ///< OBJ: no faces under these
+  bool srgb = false;              ///< PLY: vertex_color is encoded as sRGB; whoever reads it has to decode it
+  bool encoded = false;           ///< PLY: integers of attributes are parts of their type's largest, encoded as sRGB
   // OBJ, as Mitsuba 0.x has it:
   bool weld = false;   ///< corners without a normal share vertices by their position and uv, not by index
   bool apart = false;  ///< faces under different g or usemtl share no computed normals

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <unordered_map>
 
 #include "ajar/core/error.h"
 #include "ajar/core/sampler.h"
@@ -67,7 +66,10 @@ uint32_t read_index(Cursor& in, size_t so_far, const char* what, bool may_lack =
 }
 
 void read_face(Cursor& in, ObjFile& out, uint32_t material) {
+  std::vector<FaceRange>& runs = out.runs[material];
+  if (runs.empty() || runs.back().second < out.faces.size()) runs.emplace_back(out.faces.size(), out.faces.size());
   out.faces.push_back({out.corners.size(), in.line, material});
+  runs.back().second = out.faces.size();
   while (!in.at_end()) {
     Corner c{read_index(in, out.v.size(), "v", false), none, none};
     if (!in.at_break() && *in.p == '/') {
@@ -80,6 +82,7 @@ void read_face(Cursor& in, ObjFile& out, uint32_t material) {
     }
     if (!in.ends_token()) in.fail(fmt::format("\"{}\" after a corner of a face", in.token()));
     out.corners.push_back(c);
+    out.lacks_normals |= c.vn == none;
   }
   // Elsewhere such faces are left out, as they have no area.
   if (const size_t corners = out.corners.size() - out.faces.back().first; in.p == in.end && corners < 3)
@@ -87,9 +90,9 @@ void read_face(Cursor& in, ObjFile& out, uint32_t material) {
 }
 
 // Index of a material by its name, a new one where there is none yet.
-uint32_t name_material(ObjFile& out, std::unordered_map<std::string, uint32_t>& known, const std::string& name) {
-  const auto [at, added] = known.emplace(name, uint32_t(out.materials.size()));
-  if (added) out.materials.push_back(name);
+uint32_t name_material(ObjFile& out, const std::string& name) {
+  const auto [at, added] = out.by_name.emplace(name, uint32_t(out.materials.size()));
+  if (added) out.materials.push_back(name), out.runs.emplace_back();
   return at->second;
 }
 
@@ -133,10 +136,27 @@ void check_range(const ObjFile& in, const Face& face, const Corner& c) {
   check(c.vn, in.vn.size(), "vn");
 }
 
-std::vector<bool> taken_materials(const ObjFile& in, const MeshOptions& options) {
-  std::vector<bool> taken;
-  for (const std::string& name : in.materials) taken.push_back(!options.takes_material || options.takes_material(name));
-  return taken;
+bool takes(const MeshOptions& options, const std::string& material) {
+  return options.material.empty() ? !options.without.contains(material) : options.material == material;
+}
+
+// The faces that the options take, in order. An obj may have thousands of parts: none walks over the others' faces.
+std::vector<FaceRange> taken_runs(const ObjFile& in, const MeshOptions& options) {
+  std::vector<FaceRange> runs;
+  if (options.group >= 0) {
+    const FaceRange group = faces_of(in, options.group);  // of one material
+    if (takes(options, in.materials[in.faces[group.first].material])) runs = {group};
+  } else if (!options.material.empty()) {
+    const auto found = in.by_name.find(options.material);
+    if (found != in.by_name.end()) runs = in.runs[found->second];
+  } else if (options.without.empty()) {
+    runs = {{0, in.faces.size()}};
+  } else {
+    for (size_t i = 0; i < in.materials.size(); ++i)
+      if (takes(options, in.materials[i])) runs.insert(runs.end(), in.runs[i].begin(), in.runs[i].end());
+    std::sort(runs.begin(), runs.end());
+  }
+  return runs;
 }
 
 // What a corner shares its vertex by.
@@ -145,14 +165,13 @@ Corner key_of(const ObjFile& in, const Corner& c) {
   return {in.same_v[c.v], c.vt == none ? none : in.same_vt[c.vt], none};
 }
 
-Mesh join_corners(const ObjFile& in, const std::vector<bool>& taken, std::pair<size_t, size_t> faces) {
+// The faces of some runs, as one mesh.
+Mesh join_corners(const ObjFile& in, const std::vector<FaceRange>& runs) {
   Mesh mesh;
   VertexTable table;
   std::vector<uint32_t> polygon;
-  if (faces.second - faces.first == in.faces.size() && std::find(taken.begin(), taken.end(), false) == taken.end())
-    mesh.triangles.reserve(in.corners.size() / 2);
-  for (size_t f = faces.first; f < faces.second; ++f) {
-    if (!taken[in.faces[f].material]) continue;
+  if (runs.size() == 1 && runs[0] == FaceRange{0, in.faces.size()}) mesh.triangles.reserve(in.corners.size() / 2);
+  const auto add_face = [&](size_t f) {
     const size_t end = f + 1 < in.faces.size() ? in.faces[f + 1].first : in.corners.size();
     polygon.clear();
     for (size_t i = in.faces[f].first; i < end; ++i) {
@@ -162,7 +181,9 @@ Mesh join_corners(const ObjFile& in, const std::vector<bool>& taken, std::pair<s
       if (table.keys.size() > mesh.positions.size()) mesh.positions.push_back(in.v[c.v]);
     }
     add_polygon(mesh, polygon);
-  }
+  };
+  for (const auto& [first, end] : runs)
+    for (size_t f = first; f < end; ++f) add_face(f);
   // Left empty where no corner says anything; absent ones among others are 0: no texture, normal to be computed.
   const auto gather = [&](auto& to, const auto& from, uint32_t Corner::*index) {
     if (std::none_of(table.keys.begin(), table.keys.end(), [&](const Corner& c) { return c.*index != none; })) return;
@@ -195,12 +216,8 @@ std::vector<uint32_t> firsts_of(const std::vector<V>& values) {
   return firsts;
 }
 
-bool lacks_normals(const ObjFile& in) {
-  return std::any_of(in.corners.begin(), in.corners.end(), [](const Corner& c) { return c.vn == none; });
-}
-
 bool computes_normals(const ObjFile& in, const MeshOptions& options) {
-  return !options.face_normals && (options.max_smooth_angle >= 0 || lacks_normals(in));
+  return !options.face_normals && (options.max_smooth_angle >= 0 || in.lacks_normals);
 }
 
 void append(Mesh& to, const Mesh& mesh) {
@@ -217,14 +234,16 @@ void append(Mesh& to, const Mesh& mesh) {
   for (const glm::uvec3& t : mesh.triangles) to.triangles.push_back(t + before);
 }
 
-// One mesh of groups whose normals are computed by themselves.
-Mesh join_groups(const ObjFile& file, const std::vector<bool>& taken, const MeshOptions& options) {
+// One mesh of groups whose normals are computed by themselves. Each run begins with one of them.
+Mesh join_groups(const ObjFile& file, const std::vector<FaceRange>& runs, const MeshOptions& options) {
   Mesh all;
-  for (size_t g = 0; g < file.groups.size(); ++g) {
-    if (!taken[file.faces[file.groups[g]].material]) continue;
-    Mesh mesh = join_corners(file, taken, faces_of(file, int(g)));
-    complete(mesh, options, file.name);
-    append(all, mesh);
+  for (const FaceRange& run : runs) {
+    auto group = std::lower_bound(file.groups.begin(), file.groups.end(), run.first);
+    for (; group != file.groups.end() && *group < run.second; ++group) {
+      Mesh mesh = join_corners(file, {faces_of(file, int(group - file.groups.begin()))});
+      complete(mesh, options, file.name);
+      append(all, mesh);
+    }
   }
   return all;
 }
@@ -232,11 +251,11 @@ Mesh join_groups(const ObjFile& file, const std::vector<bool>& taken, const Mesh
 }  // namespace
 
 void weld(ObjFile& file) {
-  if (!file.colors.empty() || !lacks_normals(file)) return;  // equal places may differ in colour
+  if (!file.colors.empty() || !file.lacks_normals) return;  // equal places may differ in colour
   file.same_v = firsts_of(file.v), file.same_vt = firsts_of(file.vt);
 }
 
-std::pair<size_t, size_t> faces_of(const ObjFile& file, int group) {
+FaceRange faces_of(const ObjFile& file, int group) {
   if (group < 0) return {0, file.faces.size()};
   const size_t g = size_t(group);
   if (g >= file.groups.size())
@@ -248,9 +267,7 @@ std::pair<size_t, size_t> faces_of(const ObjFile& file, int group) {
 ObjFile scan_obj(std::string_view text, const std::string& name) {
   ObjFile out;
   out.name = name;
-  out.materials.emplace_back();
-  std::unordered_map<std::string, uint32_t> known{{"", 0}};
-  uint32_t material = 0;
+  uint32_t material = name_material(out, "");
   bool begins = true;  // another group, with the next face
   text = without_mark(text);
   out.v.reserve(text.size() / 128), out.corners.reserve(text.size() / 32);
@@ -272,16 +289,16 @@ ObjFile scan_obj(std::string_view text, const std::string& name) {
     else if (keyword == "mtllib")
       out.libraries.emplace_back(read_name(in));
     else if (keyword == "usemtl")
-      begins = true, material = name_material(out, known, std::string(read_name(in)));
+      begins = true, material = name_material(out, std::string(read_name(in)));
   }
   return out;
 }
 
 Mesh join(const ObjFile& file, const MeshOptions& options) {
-  const std::vector<bool> taken = taken_materials(file, options);
+  const std::vector<FaceRange> runs = taken_runs(file, options);
   if (options.apart && options.group < 0 && file.groups.size() > 1 && computes_normals(file, options))
-    return join_groups(file, taken, options);
-  Mesh mesh = join_corners(file, taken, faces_of(file, options.group));
+    return join_groups(file, runs, options);
+  Mesh mesh = join_corners(file, runs);
   complete(mesh, options, file.name);
   return mesh;
 }

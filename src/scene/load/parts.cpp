@@ -18,9 +18,9 @@ std::vector<MeshPart> with_rest(Params& p, std::vector<MeshPart> parts, const No
   const bool own = p.loader.document.old && p.node.type == "obj" && bsdf == nullptr;
   if (own && boolean(p, "load_materials", true)) add_library_parts(p, parts);
   if (parts.empty()) return {{"", bsdf, {}}};
-  std::set<std::string, std::less<>> names;
+  std::set<std::string> names;
   for (const MeshPart& part : parts) names.insert(part.name);
-  parts.push_back({"", bsdf, [names](std::string_view m) { return !names.contains(m); }});
+  parts.push_back({"", bsdf, std::move(names)});
   return parts;
 }
 
@@ -37,7 +37,7 @@ std::vector<MeshPart> parts_by_name(Params& p) {
       continue;
     }
     if (!names.insert(child.named).second) fail(p.loader, child, "has the name of another bsdf");
-    parts.push_back({child.named, &meant, [name = child.named](std::string_view m) { return m == name; }});
+    parts.push_back({child.named, &meant, {}});
   }
   return with_rest(p, std::move(parts), rest);
 }

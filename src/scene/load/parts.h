@@ -2,18 +2,22 @@
 // Leaves: its faces in parts, each with the bsdf that it is made of.
 #pragma once
 
-#include <functional>
+#include <set>
+#include <string>
 
 #include "loader.h"
 
 namespace ajar {
 
 struct MeshPart {
-  std::string name;                             ///< what usemtl calls it; empty for the rest
-  const Node* bsdf = nullptr;                   ///< none: the default
-  std::function<bool(std::string_view)> takes;  ///< MeshOptions::takes_material; not set where the part is the whole
-  uint32_t material = none;                     ///< out of the file's own library, where it is of that
+  std::string name;               ///< what usemtl calls it; empty for the rest
+  const Node* bsdf = nullptr;     ///< none: the default
+  std::set<std::string> without;  ///< of the rest: names of the other parts; empty where it is the whole
+  uint32_t material = none;       ///< out of the file's own library, where it is of that
 };
+
+/// Whether it is not all of the file.
+inline bool is_some(const MeshPart& part) { return !part.name.empty() || !part.without.empty(); }
 
 /// Of an obj with several bsdfs, one part for each name and one for the rest; one part of any other shape. In version
 /// 0.x what has no bsdf there goes by the materials of the file's own libraries.

@@ -181,13 +181,13 @@ void obj(Params& p, Shape& shape, const MeshPart& part) {
   const std::string path = file(p, "filename");
   MeshOptions options;
   options.flip_v = true;
-  options.takes_material = part.takes;
+  options.material = part.name, options.without = part.without;
   options.weld = p.loader.document.old;
   options.apart = p.loader.document.old && !boolean(p, "collapse", false);
   options.group = obj_group(p);
   const std::string key = options.group < 0 ? path : fmt::format("{}#{}", path, options.group);
-  file_mesh(p, shape, part.takes ? key + "#" + part.name : key, options, [&](const MeshOptions& o) {
-    const bool open = part.takes || o.group >= 0 || (p.loader.obj && p.loader.obj->name == path);
+  file_mesh(p, shape, is_some(part) ? key + "#" + part.name : key, options, [&](const MeshOptions& o) {
+    const bool open = is_some(part) || o.group >= 0 || (p.loader.obj && p.loader.obj->name == path);
     return open ? join(open_obj(p.loader, path), o) : read_obj(path, o);
   });
 }
@@ -322,8 +322,8 @@ void load_instance(Loader& loader, const Node& node, uint32_t group) {
 }
 
 void note_empty(Params& p, const MeshPart& part) {
-  if (part.takes && part.name.empty()) return;  // nothing is left for the rest
-  const std::string of = part.takes ? fmt::format(" of usemtl {}", part.name) : "";
+  if (is_some(part) && part.name.empty()) return;  // nothing is left for the rest
+  const std::string of = is_some(part) ? fmt::format(" of usemtl {}", part.name) : "";
   note(p.loader, p.node, fmt::format("{} has no faces{}: left out", text(p, "filename", ""), of));
 }
 

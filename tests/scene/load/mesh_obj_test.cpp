@@ -4,6 +4,7 @@
 #include "ajar/core/error.h"
 #include "kit/files.h"
 #include "mesh_samples.h"
+#include "scene/load/obj.h"
 
 namespace ajar {
 namespace {
@@ -211,6 +212,38 @@ TEST(MeshObj, one_group_alone) {
   EXPECT_EQ(obj(text, {.group = 0}).positions[3], Vec3(1, 0, 0));
   EXPECT_EQ(kit::error_of([&] { parse_obj(text, "a.obj", {.group = 2}); }),
             "a.obj: shapeIndex 2: the file has 2 groups of faces, counted from 0");
+}
+
+// Each part is made of its own runs of faces, and of no others.
+TEST(MeshObj, parts_are_made_of_runs_of_faces) {
+  std::string text = "vn 0 0 1\n";
+  for (int k = 0; k < 7; ++k) text += fmt::format("v {0} 0 0\nv {0} 1 0\nv {0} 0 1\n", k);
+  int i = 0;
+  for (const char* line : {"", "usemtl a\n", "g again\nusemtl a\n", "usemtl b\n", "usemtl a\n", "", "usemtl b\n"})
+    text += fmt::format("{}f {}//1 {}//1 {}//1\n", line, i + 1, i + 2, i + 3), i += 3;
+  const ObjFile file = scan_obj(text, "a.obj");
+  using Runs = std::vector<FaceRange>;
+  EXPECT_EQ(file.runs, (std::vector<Runs>{{{0, 1}}, {{1, 3}, {4, 6}}, {{3, 4}, {6, 7}}}));
+  EXPECT_FALSE(file.lacks_normals);
+  const auto places = [&](const MeshOptions& options) {
+    std::string out;
+    const Mesh m = join(file, options);
+    for (const glm::uvec3& t : m.triangles) out += std::to_string(int(m.positions[t.x].x));
+    return out;
+  };
+  for (const bool apart : {false, true}) {  // where normals are made anew, group by group
+    const float angle = apart ? 10.0f : -1.0f;
+    EXPECT_EQ(places({.max_smooth_angle = angle, .apart = apart}), "0123456");
+    EXPECT_EQ(places({.max_smooth_angle = angle, .material = "a", .apart = apart}), "1245");
+    EXPECT_EQ(places({.max_smooth_angle = angle, .material = "b", .apart = apart}), "36");
+    EXPECT_EQ(places({.max_smooth_angle = angle, .without = {"a"}, .apart = apart}), "036");
+    EXPECT_EQ(places({.max_smooth_angle = angle, .without = {"a", "b"}, .apart = apart}), "0");
+    EXPECT_EQ(places({.max_smooth_angle = angle, .material = "c", .apart = apart}), "");
+  }
+  EXPECT_EQ(places({.material = "a", .group = 2}), "2");
+  EXPECT_EQ(places({.material = "a", .group = 3}), "");
+  EXPECT_EQ(places({.without = {"b"}, .group = 4}), "45");
+  EXPECT_EQ(places({.without = {"b"}, .group = 3}), "");
 }
 
 TEST(MeshObj, equal_corners_are_one_or_not) {
