@@ -166,27 +166,44 @@ void check_png(const std::string& path) {
   if (!has_data) throw Error(path + ": the image is cut off; copy it anew");
 }
 
-template <class T>
-std::vector<T> read_all(const std::string& path, OIIO::ImageInput& input, const OIIO::ImageSpec& spec,
-                        OIIO::TypeDesc type) {
-  std::vector<T> values(size_t(spec.width) * size_t(spec.height) * size_t(spec.nchannels));
-  if (!input.read_image(0, 0, 0, spec.nchannels, type, values.data()) || input.has_error()) {
-    const std::string why = input.geterror();
-    throw Error(fmt::format("{}: the image is damaged or cut off{}; copy it anew", path,
-                            why.empty() ? "" : fmt::format(" ({})", why)));
-  }
-  return values;
+// Rows that are decoded at a time: whole strips of a TIFF file, whole tiles.
+int rows_of_strip(const OIIO::ImageSpec& spec) {
+  constexpr int least = 256;
+  const int unit = std::clamp(spec.tile_width > 0 ? spec.tile_height : spec.get_int_attribute("tiff:RowsPerStrip", 64),
+                              1, spec.height);
+  return std::min((least + unit - 1) / unit * unit, spec.height);
 }
 
-void keep_bytes(Image& image, const Layout& layout, int channels, const std::vector<uint8_t>& all) {
-  const size_t pixels = size_t(image.width) * size_t(image.height);
-  image.bytes.resize(pixels * size_t(image.channels));
+// Calls keep(values, number of the first pixel) for one strip of the image after another: it is never held as a whole.
+template <class T, class F>
+void read_strips(const std::string& path, OIIO::ImageInput& input, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
+                 const F& keep) {
+  const int each = rows_of_strip(spec);
+  std::vector<T> strip;
+  for (int y = 0; y < spec.height; y += each) {
+    const int from = spec.y + y, to = spec.y + std::min(y + each, spec.height);
+    strip.resize(size_t(spec.width) * size_t(to - from) * size_t(spec.nchannels));
+    const bool read = spec.tile_width > 0
+                          ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, from, to, spec.z, spec.z + 1, 0,
+                                             spec.nchannels, type, strip.data())
+                          : input.read_scanlines(0, 0, from, to, spec.z, 0, spec.nchannels, type, strip.data());
+    if (!read || input.has_error()) {
+      const std::string why = input.geterror();
+      throw Error(fmt::format("{}: the image is damaged or cut off{}; copy it anew", path,
+                              why.empty() ? "" : fmt::format(" ({})", why)));
+    }
+    keep(strip, size_t(y) * size_t(spec.width));
+  }
+}
+
+void keep_bytes(Image& image, const Layout& layout, int channels, const std::vector<uint8_t>& strip, size_t first) {
+  const size_t pixels = strip.size() / size_t(channels);
   for (size_t i = 0; i < pixels; ++i)
     for (int c = 0; c < image.channels; ++c)
-      image.bytes[i * size_t(image.channels) + size_t(c)] = all[i * size_t(channels) + size_t(layout.color[c])];
+      image.bytes[(first + i) * size_t(image.channels) + size_t(c)] =
+          strip[i * size_t(channels) + size_t(layout.color[c])];
   if (layout.alpha < 0) return;
-  image.alpha.resize(pixels);
-  for (size_t i = 0; i < pixels; ++i) image.alpha[i] = all[i * size_t(channels) + size_t(layout.alpha)];
+  for (size_t i = 0; i < pixels; ++i) image.alpha[first + i] = strip[i * size_t(channels) + size_t(layout.alpha)];
 }
 
 // A number of a pixel, linear. Filters that make images smaller leave slightly negative ones beside bright spots.
@@ -205,18 +222,16 @@ float take_number(Image& image, float stored, size_t pixel, const Transfer& tran
 }
 
 void keep_floats(Image& image, const Layout& layout, int channels, const Transfer& transfer,
-                 const ImageOptions& options, const std::vector<float>& all) {
-  const size_t pixels = size_t(image.width) * size_t(image.height);
-  image.floats.resize(pixels * size_t(image.channels));
+                 const ImageOptions& options, const std::vector<float>& strip, size_t first) {
+  const size_t pixels = strip.size() / size_t(channels);
   for (size_t i = 0; i < pixels; ++i)
     for (int c = 0; c < image.channels; ++c)
-      image.floats[i * size_t(image.channels) + size_t(c)] =
-          take_number(image, all[i * size_t(channels) + size_t(layout.color[c])], i, transfer, options);
+      image.floats[(first + i) * size_t(image.channels) + size_t(c)] =
+          take_number(image, strip[i * size_t(channels) + size_t(layout.color[c])], first + i, transfer, options);
   if (layout.alpha < 0) return;
-  image.alpha.resize(pixels);
   for (size_t i = 0; i < pixels; ++i) {
-    const float a = all[i * size_t(channels) + size_t(layout.alpha)];
-    image.alpha[i] = a > 0 ? uint8_t(std::min(a, 1.0f) * 255 + 0.5f) : 0;
+    const float a = strip[i * size_t(channels) + size_t(layout.alpha)];
+    image.alpha[first + i] = a > 0 ? uint8_t(std::min(a, 1.0f) * 255 + 0.5f) : 0;
   }
 }
 
@@ -247,14 +262,21 @@ Image load_image(const std::string& path, const ImageOptions& options) {
   image.name = path;
   image.width = spec.width, image.height = spec.height, image.channels = layout.colors;
   if (layout.guessed) image.guessed = names_of(spec, layout);
+  const size_t pixels = size_t(spec.width) * size_t(spec.height);
+  if (layout.alpha >= 0) image.alpha.resize(pixels);
   if (spec.format == OIIO::TypeDesc::UINT8) {
     for (int i = 0; i < 256; ++i) image.decode[i] = transfer(float(i) / 255);
-    keep_bytes(image, layout, spec.nchannels, read_all<uint8_t>(path, *input, spec, OIIO::TypeDesc::UINT8));
+    image.bytes.resize(pixels * size_t(image.channels));
+    read_strips<uint8_t>(path, *input, spec, OIIO::TypeDesc::UINT8, [&](const auto& strip, size_t first) {
+      keep_bytes(image, layout, spec.nchannels, strip, first);
+    });
   } else {
-    std::vector<float> all = read_all<float>(path, *input, spec, OIIO::TypeDesc::FLOAT);
-    if (const auto conversion = conversion_of(path, spec, layout, options.raw))
-      convert(all, layout, spec.nchannels, *conversion);
-    keep_floats(image, layout, spec.nchannels, transfer, options, all);
+    const std::optional<Mat3> conversion = conversion_of(path, spec, layout, options.raw);
+    image.floats.resize(pixels * size_t(image.channels));
+    read_strips<float>(path, *input, spec, OIIO::TypeDesc::FLOAT, [&](auto& strip, size_t first) {
+      if (conversion) convert(strip, layout, spec.nchannels, *conversion);
+      keep_floats(image, layout, spec.nchannels, transfer, options, strip, first);
+    });
   }
   drop_idle_alpha(image);
   return image;

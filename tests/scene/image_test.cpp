@@ -1,5 +1,6 @@
 // Reading images: every common format, colour spaces, alpha, and refusals of damaged files.
 #include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -134,6 +135,40 @@ TEST_F(ImageFile, FloatFormatsAreLinear) {
   }
   const Image half = load_image(write("h.exr", 2, 1, 3, OIIO::TypeDesc::FLOAT, values, OIIO::TypeDesc::HALF));
   EXPECT_NEAR(texel(half, 0, 0).x, 0.25f, 1e-6f);
+}
+
+// Tall ones, in tiles too, and those whose rows do not count from 0.
+TEST_F(ImageFile, AreReadInStripsToTheSamePixels) {
+  constexpr int w = 5, h = 700;
+  std::vector<float> floats;
+  std::vector<uint8_t> bytes;
+  for (int i = 0; i < 4 * w * h; ++i) floats.push_back(float(i) / 4096), bytes.push_back(uint8_t(i % 255 + i / 5000));
+  const auto expect_floats = [&](const std::string& path) {
+    const Image image = load_image(path, {.raw = true});
+    ASSERT_EQ(image.floats.size(), 3u * w * h) << path;
+    for (size_t i = 0; i < w * h; ++i)
+      for (size_t c = 0; c < 3; ++c) ASSERT_EQ(image.floats[3 * i + c], floats[4 * i + c]) << path << " " << i;
+    for (size_t i = 0; i < w * h; ++i)
+      ASSERT_EQ(image.alpha[i], uint8_t(std::min(floats[4 * i + 3], 1.0f) * 255 + 0.5f)) << path;
+  };
+  for (const char* name : {"tall.exr", "tall.tif"}) expect_floats(write(name, w, h, 4, OIIO::TypeDesc::FLOAT, floats));
+  for (const int tile_height : {0, 16, 64}) {
+    const std::string path = (folder / fmt::format("placed-{}.exr", tile_height)).string();
+    OIIO::ImageSpec spec(w, h, 4, OIIO::TypeDesc::FLOAT);
+    spec.x = 3, spec.y = -100;
+    if (tile_height > 0) spec.tile_width = 16, spec.tile_height = tile_height;
+    const auto out = OIIO::ImageOutput::create(path);
+    ASSERT_TRUE(out->open(path, spec) && out->write_image(OIIO::TypeDesc::FLOAT, floats.data()) && out->close());
+    expect_floats(path);
+  }
+  for (const char* name : {"tall.png", "tall-bytes.tif", "tall.tga"}) {
+    const Image image = load_image(write(name, w, h, 4, OIIO::TypeDesc::UINT8, bytes));
+    ASSERT_EQ(image.bytes.size(), 3u * w * h) << name;
+    for (size_t i = 0; i < w * h; ++i) {
+      for (size_t c = 0; c < 3; ++c) ASSERT_EQ(image.bytes[3 * i + c], bytes[4 * i + c]) << name << " " << i;
+      ASSERT_EQ(image.alpha[i], bytes[4 * i + 3]) << name;
+    }
+  }
 }
 
 // By the file's primaries and white, in the order of OpenEXR; numbers by its matrices.
