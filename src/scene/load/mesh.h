@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "ajar/scene/scene.h"
 
@@ -41,6 +42,7 @@ struct MeshOptions {
   int group = -1;      ///< the faces of one of these groups alone, counted from 0
   /// Serialized, as Mitsuba 0.x has it: a mirror leaves the outside of a mesh without normals where it was.
   bool keeps_side = false;
+  std::vector<std::string>* notes = nullptr;  ///< PLY: gets a line for what changes the image and is passed over
   Mat4 to_world{1};  ///< applied before normals are made, which a mirror or uneven scale would change
 };
 

@@ -233,6 +233,15 @@ Mesh read_body(const PlyHeader& header, const char* p, const char* end, const st
   return mesh;
 }
 
+// As MeshLab writes them.
+bool has_corner_uvs(const PlyHeader& header) {
+  return std::any_of(header.elements.begin(), header.elements.end(), [](const PlyElement& e) {
+    return e.name == "face" && e.count > 0 &&
+           std::any_of(e.properties.begin(), e.properties.end(),
+                       [](const PlyProperty& p) { return p.length && p.name == "texcoord"; });
+  });
+}
+
 }  // namespace
 
 Mesh parse_ply(std::span<const std::byte> bytes, const std::string& name, const MeshOptions& options) {
@@ -243,6 +252,10 @@ Mesh parse_ply(std::span<const std::byte> bytes, const std::string& name, const 
                                                          : read_body<PlyFormat::big>;
   Mesh mesh = read(header, p, end, name, options.encoded);
   complete(mesh, options, name);
+  if (options.notes && has_corner_uvs(header))
+    options.notes->push_back(name +
+                             ": texture coordinates of the faces' corners (the list texcoord) are not used; write them "
+                             "as u and v of the vertices");
   return mesh;
 }
 

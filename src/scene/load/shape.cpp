@@ -200,7 +200,9 @@ void decode(std::vector<Rgb>& colors) {
 
 void ply(Params& p, Shape& shape, const MeshPart&) {
   const std::string path = file(p, "filename");
+  std::vector<std::string> notes;
   MeshOptions options;
+  options.notes = &notes;
   options.srgb = p.loader.document.old && boolean(p, "srgb", true);
   options.encoded = !p.loader.document.old;
   file_mesh(p, shape, path, options, [&](const MeshOptions& o) {
@@ -208,6 +210,7 @@ void ply(Params& p, Shape& shape, const MeshPart&) {
     if (o.srgb) decode(mesh.colors);
     return mesh;
   });
+  for (const std::string& text : notes) note(p.loader, p.node, text);
 }
 
 void serialized(Params& p, Shape& shape, const MeshPart&) {

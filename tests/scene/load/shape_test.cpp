@@ -350,5 +350,18 @@ TEST(Shapes, FarAwayIsAnError) {
       error_of(shape("cube", "<transform name='to_world'><scale value='3e38'/><translate x='3e38'/></transform>")), "");
 }
 
+TEST(Shapes, TextureCoordinatesOfCornersAreNoted) {
+  const auto notes = [](const std::string& list, const std::string& numbers) {
+    const std::string head = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n";
+    const std::string faces = "property float z\nelement face 1\nproperty list uchar int vertex_indices\n";
+    const std::string path =
+        write_file("corners.ply", head + faces + list + "end_header\n0 0 0 1 0 0 0 1 0\n3 0 1 2" + numbers + "\n");
+    return load_inside("<shape type='ply'><string name='filename' value='" + path + "'/></shape>").notes;
+  };
+  const std::string words = "(the list texcoord) are not used; write them as u and v of the vertices";
+  EXPECT_TRUE(says(notes("property list uchar float texcoord\n", " 6 0 0 1 0 0 1"), words));
+  EXPECT_FALSE(says(notes("property list uchar float other\n", " 1 0"), "texcoord"));
+}
+
 }  // namespace
 }  // namespace ajar
