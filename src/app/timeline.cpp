@@ -265,7 +265,9 @@ std::vector<double> values_at(const Track& track, double frame) {
     const double from = track.smooth ? slope_at(track, i, k) * width : change;
     const double to = track.smooth ? slope_at(track, i + 1, k) * width : change;
     // Cubic with these slopes at its ends (Hermite); a straight line where all agree.
-    out.push_back(a.values[k] + u * (from + u * (3 * change - 2 * from - to + u * (from + to - 2 * change))));
+    const double value = a.values[k] + u * (from + u * (3 * change - 2 * from - to + u * (from + to - 2 * change)));
+    // What rounding leaves of 0 would be no whole number.
+    out.push_back(std::abs(value) < 1e-12 * std::abs(change) ? 0 : value);
   }
   return out;
 }

@@ -75,9 +75,10 @@ double share_unseen(const Scene& scene, const Accel& accel, const Fields& fields
   return all > 0 ? double(unseen) / all : 0;
 }
 
-// Half is what the lessons of a tiny image may miss. Fields that are young are still being taught.
-bool is_cut(const Scene& scene, const Accel& accel, const Fields& fields) {
-  return fields.generation >= young_generations && share_unseen(scene, accel, fields) > 0.5;
+// Of what a tiny image shows its lessons miss the more. Fields that are young are still being taught.
+bool is_cut(const Scene& scene, const Accel& accel, const Fields& fields, size_t pixels) {
+  const double known = 0.5 * std::min(double(pixels) / 1024, 1.0);
+  return fields.generation >= young_generations && share_unseen(scene, accel, fields) > 1 - known;
 }
 
 }  // namespace
@@ -99,7 +100,7 @@ std::optional<Fields> teach(const Scene& scene, const Accel& accel, const Render
   RenderState state = start_render(scene, teaching);
   if (before) {
     go_on_with(scene, before->fields, moved, sequence, learn_options(teaching), state);
-    if (!is_cut(scene, accel, state.learning.fields)) {
+    if (!is_cut(scene, accel, state.learning.fields, state.film.pixels())) {
       teaching.learn.forget = sequence.forget, teaching.learn.steady = sequence.coherence.numbers;
       if (!give_lessons(scene, accel, teaching, 1, sequence.teach, state, monitor)) return {};
       return std::move(state.learning.fields);

@@ -33,6 +33,18 @@ TEST(Timeline, SweepsGoFromEndToEnd) {
   EXPECT_EQ(parameters.at("tint"), "red");
 }
 
+// On processors that fuse products and sums, too.
+TEST(Timeline, SweepsThroughZeroAreZeroThere) {
+  for (const char* sweep : {"x=-1..4", "x=-0.3..1.2", "x=-1..4:smooth"})
+    for (int frames = 2; frames <= 200; ++frames) {
+      const Timeline t = make_timeline(std::to_string(frames), {sweep}, "", "");
+      for (int f = 0; f < frames; ++f) {
+        const double x = std::stod(parameters_at(t, f).at("x"));
+        EXPECT_TRUE(x == 0 || std::abs(x) > 1e-9) << sweep << " " << frames << " " << f << ": " << x;
+      }
+    }
+}
+
 TEST(Timeline, SmoothOnesEaseInAndOut) {
   const Track t = make_timeline("9", {"x=0..8:smooth"}, "", "").tracks.at("x");
   EXPECT_EQ(values_at(t, 0), Numbers({0}));

@@ -43,10 +43,10 @@ struct Carried {
 uint64_t image_seed(const SequenceOptions& sequence, uint64_t seed, uint32_t frame);
 uint64_t teaching_seed(const SequenceOptions& sequence, uint64_t seed, uint32_t frame);
 
-/// The fields of a frame: those of the frame before (nothing: from nothing), doubted where the scene moved, and then
-/// taught. Where the image has a time limit, lessons take a third of it, more only where fields would be of no use
-/// otherwise; else they are the same whatever the clock and the number of threads. options: of the image. Nothing where
-/// the monitor said stop.
+/// The fields of a frame: those of the frame before, doubted where the scene moved, and then taught; from nothing where
+/// there are none, or after a cut. Where the image has a time limit, lessons take a third of it, more only where fields
+/// would be of no use otherwise; else they are the same whatever the clock and the number of threads. options: of the
+/// image. Nothing where the monitor said stop.
 std::optional<Fields> teach(const Scene& scene, const Accel& accel, const RenderOptions& options,
                             const SequenceOptions& sequence, const Carried* before, const std::vector<Box>& moved,
                             uint32_t frame, const Monitor& monitor);
