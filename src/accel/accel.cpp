@@ -270,7 +270,9 @@ bool Accel::intersect(const Vec3& o, const Vec3& d, float t_min, float t_max, Hi
   hit.t = r.ray.tfar * stretch_;
   hit.prim = r.hit.primID;
   hit.instance = r.hit.instID[0] == RTC_INVALID_GEOMETRY_ID ? none : r.hit.instID[0] - first_instance_;
-  hit.shape = hit.instance == none ? r.hit.geomID : data_->grouped[data_->instance_first[hit.instance] + r.hit.geomID];
+  hit.shape = r.hit.geomID;
+  if (hit.instance != none) [[unlikely]]
+    hit.shape = data_->grouped[data_->instance_first[hit.instance] + r.hit.geomID];
   hit.bary = {r.hit.u, r.hit.v};
   return true;
 }

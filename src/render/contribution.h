@@ -50,14 +50,18 @@ inline double gain(StrategyCost& cost, const Rgb& pixel) {
   return double(energy);
 }
 
+/// On request alone, and not to be in the way of what is asked for each time.
+[[gnu::noinline]] inline void show(std::vector<Strategy>& strategies, const Strategy& found) {
+  strategies.push_back(found);
+}
+
 /// Adds what strategy (s, t) found, raw and weighted, to the sample's own pixel. s < 0: by merging (see Strategy).
 inline void add_to_pixel(Sample& sample, Scratch& scratch, int s, int t, const Rgb& raw, const Rgb& weighted) {
   if (!accept(weighted, sample.path, scratch)) return;
   sample.value += weighted;
   const Rgb filtered = weighted * sample.filter;
   gain(s < 0 ? scratch.ledger->merge_at(-s, t) : scratch.ledger->at(s, t), filtered);
-  if (scratch.strategies)
-    scratch.strategies->push_back({s, t, Vec2(sample.x, sample.y), raw * sample.filter, filtered});
+  if (scratch.strategies) show(*scratch.strategies, {s, t, Vec2(sample.x, sample.y), raw * sample.filter, filtered});
 }
 
 /// Whether light came to the subpath's last vertex by way of a delta event.
@@ -86,7 +90,7 @@ inline void add_splat(const Job& job, const Sample& sample, Scratch& scratch, co
   const float counts = scratch.halves->splat_counts;
   scratch.splats->push_back({raster, weighted * counts});
   gain_splat(job, scratch.splats->back(), scratch);
-  if (scratch.strategies) scratch.strategies->push_back({scratch.light.n, 1, raster, raw * counts, weighted * counts});
+  if (scratch.strategies) show(*scratch.strategies, {scratch.light.n, 1, raster, raw * counts, weighted * counts});
 }
 
 }  // namespace ajar

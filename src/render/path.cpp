@@ -47,7 +47,9 @@ Rgb direct(const Job& job, const Guide& guide, const Surface& at, Sampler& sampl
     learn(0);
     return Rgb(0);
   }
-  const bool free = is_unblocked(job, segment_to(d, at.p, at.ng, at.error), 1, t, scratch);
+  ++scratch.counters.shadow_rays;
+  ++scratch.ledger->at(1, t).rays;
+  const bool free = visible(*job.accel, segment_to(d, at.p, at.ng, at.error));
   learn(free ? max_component(d.radiance) * std::abs(glm::dot(at.ng, d.wi)) / d.pdf : 0);
   if (!free) return Rgb(0);
   const LightPoint& l = d.point;
