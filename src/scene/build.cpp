@@ -168,6 +168,10 @@ uint32_t add_quadric(Scene& scene, ShapeKind kind, const Mat4& to_world, uint32_
   return append(scene, &Scene::shapes, shape);
 }
 
+uint32_t add_instance(Scene& scene, uint32_t group, const Mat4& to_world) {
+  return append(scene, &Scene::instances, Instance{group, to_world, glm::inverse(to_world)});
+}
+
 uint32_t add_sphere(Scene& scene, const Vec3& center, float radius, uint32_t material) {
   return add_quadric(scene, ShapeKind::sphere, glm::scale(glm::translate(Mat4(1), center), Vec3(radius)), material);
 }

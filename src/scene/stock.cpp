@@ -254,7 +254,7 @@ Scene instanced(bool mirrored, int size) {
   const Mat4 left = glm::rotate(glm::translate(Mat4(1), Vec3(-0.5f, -0.45f, 0.1f)), 0.3f, Vec3(0, 0, 1));
   const Mat4 right =
       mirrored ? glm::scale(Mat4(1), Vec3(-1, 1, 1)) * left : glm::translate(Mat4(1), Vec3(1, 0, 0)) * left;
-  for (const Mat4& m : {left, right}) scene.instances.push_back({0, m, glm::inverse(m)});
+  for (const Mat4& m : {left, right}) add_instance(scene, 0, m);
   return finished(std::move(scene));
 }
 

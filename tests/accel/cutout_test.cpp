@@ -96,10 +96,7 @@ TEST(CutOut, InstancesHaveTheirMasks) {
   Scene scene = screen(0.4f);
   scene.groups = 1;
   scene.shapes[0].group = 0;
-  Instance instance;
-  instance.to_world = glm::translate(Mat4(1), Vec3(5, 0, 0));
-  instance.to_object = glm::inverse(instance.to_world);
-  scene.instances.push_back(instance);
+  add_instance(scene, 0, glm::translate(Mat4(1), Vec3(5, 0, 0)));
   finish(scene);
   EXPECT_NEAR(stopped(Accel(scene), {5, 0}, {6, 1}), 0.4, 0.012);
 }
@@ -111,10 +108,7 @@ TEST(CutOut, QuadricsInGroupsHaveTheirMasks) {
   add_sphere(scene, Vec3(0), 1, masked(scene, 0.4f, solid));
   scene.groups = 1;
   scene.shapes[1].group = 0;
-  Instance instance;
-  instance.to_world = glm::translate(Mat4(1), Vec3(5, 0, 0));
-  instance.to_object = glm::inverse(instance.to_world);
-  scene.instances.push_back(instance);
+  add_instance(scene, 0, glm::translate(Mat4(1), Vec3(5, 0, 0)));
   finish(scene);
   EXPECT_NEAR(stopped(Accel(scene), {4.5f, -0.5f}, {5.5f, 0.5f}), 1 - 0.6 * 0.6, 0.012);
 }

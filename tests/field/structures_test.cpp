@@ -162,10 +162,7 @@ TEST(Probes, AreSpreadByArea) {
   add_quad(scene, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, grey);
   const uint32_t in_group = add_quad(scene, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, grey);
   scene.groups = 1, scene.shapes[in_group].group = 0;
-  Instance twice;
-  twice.to_world = glm::scale(glm::translate(Mat4(1), Vec3(0, 0, 5)), Vec3(2));
-  twice.to_object = glm::inverse(twice.to_world);
-  scene.instances.push_back(twice);
+  add_instance(scene, 0, glm::scale(glm::translate(Mat4(1), Vec3(0, 0, 5)), Vec3(2)));
   add_sphere(scene, {9, 9, 9}, std::sqrt(3 / (4 * pi)), grey);
   finish(scene);
   double total = 0;

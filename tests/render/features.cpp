@@ -192,11 +192,8 @@ Scene with_instances() {
   const uint32_t second = add_sphere(scene, {0.3f, -0.5f, 0.2f}, 0.3f, add_diffuse(scene, {0.2f, 0.4f, 0.8f}));
   scene.shapes[first].group = scene.shapes[second].group = 0;
   for (const float side : {-1.0f, 1.0f}) {
-    Instance instance;
-    instance.to_world = glm::translate(Mat4(1), Vec3(side * 0.5f, -0.4f, 0));
-    instance.to_world = glm::scale(glm::rotate(instance.to_world, side, Vec3(0, 1, 0)), Vec3(side * 0.5f, 0.8f, 0.6f));
-    instance.to_object = glm::inverse(instance.to_world);
-    scene.instances.push_back(instance);
+    const Mat4 turned = glm::rotate(glm::translate(Mat4(1), Vec3(side * 0.5f, -0.4f, 0)), side, Vec3(0, 1, 0));
+    add_instance(scene, 0, glm::scale(turned, Vec3(side * 0.5f, 0.8f, 0.6f)));
   }
   return finished(std::move(scene));
 }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "ajar/core/error.h"
+#include "ajar/scene/build.h"
 #include "ajar/scene/motion.h"
 #include "lights.h"
 
@@ -29,7 +30,7 @@ TEST(Finish, BoundsHoldEverything) {
   scene.shapes[in_group].group = 0;
   scene.groups = 1;
   const Mat4 m = placed(1, {-1, 2, 1}, {3, 4, -7});
-  scene.instances.push_back({0, m, glm::inverse(m)});
+  add_instance(scene, 0, m);
   finish(scene);
   const auto inside = [&](const glm::dvec3& p) { return glm::distance(Vec3(p), scene.center) <= scene.radius; };
   for (uint32_t id = 1; id <= 3; ++id)
@@ -118,7 +119,7 @@ TEST(Motion, IsWhereShapesWereAndAre) {
     scene.shapes[in_group].group = 0;
     scene.groups = 1;
     const Mat4 m = placed(1, Vec3(1), {0, y, 0});
-    scene.instances.push_back({0, m, glm::inverse(m)});
+    add_instance(scene, 0, m);
     finish(scene);
     return scene;
   };

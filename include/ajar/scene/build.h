@@ -39,6 +39,8 @@ uint32_t add_sphere(Scene& scene, const Vec3& center, float radius, uint32_t mat
 /// A sphere of triangles with smooth normals.
 uint32_t add_globe(Scene& scene, const Vec3& center, float radius, uint32_t material, int rings = 24);
 uint32_t add_quadric(Scene& scene, ShapeKind kind, const Mat4& to_world, uint32_t material);
+/// Shows the shapes of a group, of which there are Scene::groups, under a transform.
+uint32_t add_instance(Scene& scene, uint32_t group, const Mat4& to_world);
 
 /// Makes a shape an area light [W/(m^2 sr)]; returns the light. Throws Error where there is no such shape.
 uint32_t add_area_light(Scene& scene, uint32_t shape, const Slot& radiance);
