@@ -121,14 +121,16 @@ Rgb eval_attribute(const Scene& scene, const Texture& texture, const Surface& at
   return glm::max(between, Rgb(0));
 }
 
-float reduce(const Rgb& c) { return c.x == c.y && c.y == c.z ? c.x : luminance(c); }
+// Derivatives to u and v, by channel.
+struct Gradient {
+  Rgb u{0}, v{0};
+};
 
-Vec2 bitmap_gradient(const Scene& scene, const Texture& t, const Vec2& uv) {
+Gradient bitmap_gradient(const Scene& scene, const Texture& t, const Vec2& uv) {
   const Image& image = scene.images[t.image];
   const Patch q = patch(t, image, uv);
-  const float c00 = reduce(q.c00), c10 = reduce(q.c10), c01 = reduce(q.c01), c11 = reduce(q.c11);
-  float dx = ((c10 - c00) * (1 - q.at.y) + (c11 - c01) * q.at.y) * float(image.width);
-  float dy = ((c01 - c00) * (1 - q.at.x) + (c11 - c10) * q.at.x) * float(image.height);
+  Rgb dx = ((q.c10 - q.c00) * (1 - q.at.y) + (q.c11 - q.c01) * q.at.y) * float(image.width);
+  Rgb dy = ((q.c01 - q.c00) * (1 - q.at.x) + (q.c11 - q.c10) * q.at.x) * float(image.height);
   if (t.flip_v) dy = -dy;
   const Vec3 at = t.to_uv * Vec3(uv, 1);
   const auto mirrored = [](Wrap wrap, float x) { return wrap == Wrap::mirror && x - 2 * std::floor(x * 0.5f) > 1; };
@@ -210,27 +212,41 @@ Rgb eval(const Scene& scene, const Slot& slot, const Surface& at) {
   return Rgb(0);
 }
 
-float eval_scalar(const Scene& scene, const Slot& slot, const Surface& at) { return reduce(eval(scene, slot, at)); }
+float eval_scalar(const Scene& scene, const Slot& slot, const Surface& at) { return scalar_of(eval(scene, slot, at)); }
 
-Vec2 eval_gradient(const Scene& scene, const Slot& slot, const Surface& at) {
-  if (slot.texture == none) return {0, 0};
+namespace {
+
+Gradient gradient_of(const Scene& scene, const Slot& slot, const Surface& at) {
+  if (slot.texture == none) return {};
   const Texture& t = scene.textures[slot.texture];
   switch (t.kind) {
     case TextureKind::bitmap:
       return bitmap_gradient(scene, t, at.uv);
     case TextureKind::checkerboard:
     case TextureKind::grid:
-      return eval_gradient(scene, seen(t, at.uv), at);
-    case TextureKind::scale:
-      return eval_gradient(scene, t.color0, at) * eval_scalar(scene, t.color1, at) +
-             eval_gradient(scene, t.color1, at) * eval_scalar(scene, t.color0, at);
+      return gradient_of(scene, seen(t, at.uv), at);
+    case TextureKind::scale: {
+      const Gradient a = gradient_of(scene, t.color0, at), b = gradient_of(scene, t.color1, at);
+      const Rgb value_a = eval(scene, t.color0, at), value_b = eval(scene, t.color1, at);
+      return {a.u * value_b + b.u * value_a, a.v * value_b + b.v * value_a};
+    }
     case TextureKind::mesh_attribute:
-      return {0, 0};
+      return {};
     case TextureKind::limit:
-    case TextureKind::average:
-      return eval_gradient(scene, t.color0, at);
+      return gradient_of(scene, t.color0, at);
+    case TextureKind::average: {
+      const Gradient all = gradient_of(scene, t.color0, at);
+      return {averaged(all.u), averaged(all.v)};
+    }
   }
-  return {0, 0};
+  return {};
+}
+
+}  // namespace
+
+Vec2 eval_gradient(const Scene& scene, const Slot& slot, const Surface& at) {
+  const Gradient all = gradient_of(scene, slot, at);
+  return {scalar_of(all.u), scalar_of(all.v)};
 }
 
 Rgb mean(const Scene& scene, const Slot& slot) {

@@ -114,6 +114,25 @@ TEST(Texture, UvTransform) {
   EXPECT_NEAR(f.at(0.1f, 0.2f), Fixture().at(0.45f, 1.1f), 1e-4f);
 }
 
+// Red heights through a red factor are seen as they are, and slope as they are.
+TEST(Texture, GradientsOfProductsOfColours) {
+  Fixture f;
+  f.scene.images[0].channels = 3;
+  f.scene.images[0].floats = {1, 0, 5, 2, 0, 4, 3, 0, 3, 4, 0, 2, 5, 0, 1, 6, 0, 0};
+  f.scene.images[0].alpha.clear();
+  for (const TextureKind kind : {TextureKind::scale, TextureKind::average}) {
+    f.scene.textures.resize(2);
+    f.scene.textures[1].kind = kind;
+    f.scene.textures[1].color0.texture = 0;
+    f.scene.textures[1].color1 = Slot(Rgb(1, 0, 0));
+    f.slot.texture = 1;
+    const float h = 1e-3f;
+    const Vec2 g = f.gradient(0.4f, 0.5f);
+    EXPECT_NEAR(g.x, (f.at(0.4f + h, 0.5f) - f.at(0.4f - h, 0.5f)) / (2 * h), 2e-3f) << int(kind);
+    EXPECT_NEAR(g.y, (f.at(0.4f, 0.5f + h) - f.at(0.4f, 0.5f - h)) / (2 * h), 2e-3f) << int(kind);
+  }
+}
+
 // Against differences of eval, within one texel cell; every wrap, transform and nesting.
 TEST(Texture, GradientIsTheDerivative) {
   for (const Wrap wrap : {Wrap::repeat, Wrap::mirror, Wrap::clamp, Wrap::zero, Wrap::one})

@@ -73,13 +73,15 @@ struct Texture {
 /// A grey of the mean of red, green and blue; exactly itself where it is grey.
 inline Rgb averaged(const Rgb& c) { return c.x == c.y && c.y == c.z ? c : Rgb((c.x + c.y + c.z) / 3); }
 
+/// A colour as one number: any channel where it is grey, exactly, else its luminance.
+inline float scalar_of(const Rgb& c) { return c.x == c.y && c.y == c.z ? c.x : luminance(c); }
+
 /// Value of a slot at a surface point; linear RGB. Bilinear unless the texture says nearest.
 Rgb eval(const Scene& scene, const Slot& slot, const Surface& at);
 /// The same reduced to one number: the only channel, or the luminance of three.
 float eval_scalar(const Scene& scene, const Slot& slot, const Surface& at);
 /// Derivative of eval_scalar to u and v at the point (for bump maps), per unit of the mesh's uv; bitmaps as if
-/// bilinear, products of colours as if of their luminances, limits as if not reached, averages as
-/// if luminances.
+/// bilinear, limits as if not reached.
 Vec2 eval_gradient(const Scene& scene, const Slot& slot, const Surface& at);
 /// Mean value over the unit square of uv; exact for constants and bitmaps that fill it.
 Rgb mean(const Scene& scene, const Slot& slot);

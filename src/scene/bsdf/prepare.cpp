@@ -130,11 +130,14 @@ float alpha_of_row(int row) {
 
 // eta^2 (1 - R), R being the share of diffuse light inside that the boundary reflects.
 float not_reflected_inside(const Material& m, float alpha) {
-  constexpr int n = 64;
+  constexpr int n = 32;
+  const float critical = safe_sqrt(1 - 1 / (m.ior * m.ior));  // cosine: below it a smooth boundary reflects everything
   double reflected = 0;
   for (int i = 0; i < n; ++i) {
-    const float cos = (float(i) + 0.5f) / n;
-    reflected += 2.0 / n * double(cos) * rough_reflectance(m.distribution, alpha, 1 / m.ior, cos);
+    const float t = (float(i) + 0.5f) / n;
+    for (const auto& [cos, width] :
+         {std::pair{critical * t, critical}, {critical + (1 - critical) * t * t, (1 - critical) * 2 * t}})
+      reflected += 2.0 / n * double(cos * width) * rough_reflectance(m.distribution, alpha, 1 / m.ior, cos);
   }
   return float(double(m.ior) * m.ior * (1 - reflected));
 }
@@ -144,7 +147,7 @@ void fill_table(Material& m) {
   const int rows = textured ? table_alphas + table_wide_alphas + 1 : 1;
   m.entering_table.resize(size_t(rows) * table_row);
   for (int r = 0; r < rows; ++r) {
-    const float alpha = textured ? alpha_of_row(r) : m.alpha_u.value.x;
+    const float alpha = textured ? alpha_of_row(r) : scalar_of(m.alpha_u.value);
     float* row = m.entering_table.data() + r * table_row;
     double mean = 0;
     for (int i = 0; i <= table_cosines; ++i) {
@@ -164,7 +167,7 @@ void fill_tables(Scene& scene) {
   std::map<std::tuple<float, Microfacet, float, bool, bool>, std::vector<Material*>> boundaries;
   for (Material& m : scene.materials)
     if (m.kind == MaterialKind::roughplastic)
-      boundaries[{m.ior, m.distribution, m.alpha_u.texture != none ? -1 : m.alpha_u.value.x, m.hides,
+      boundaries[{m.ior, m.distribution, m.alpha_u.texture != none ? -1 : scalar_of(m.alpha_u.value), m.hides,
                   m.inner == Inner::lost}]
           .push_back(&m);
   std::vector<std::vector<Material*>> apart;

@@ -21,9 +21,7 @@ Rgb look(const Resolver& r, const Slot& slot) {
   return slot.texture == none ? slot.value : eval(r.scene, slot, r.surface);
 }
 float look_scalar(const Resolver& r, const Slot& slot) {
-  if (slot.texture != none) return eval_scalar(r.scene, slot, r.surface);
-  const Rgb& c = slot.value;
-  return c.x == c.y && c.y == c.z ? c.x : luminance(c);
+  return slot.texture != none ? eval_scalar(r.scene, slot, r.surface) : scalar_of(slot.value);
 }
 // Weights of luminance do not add up to 1 in the last bit; a mask that is 1 must not let 1e-7 pass.
 float look_unit(const Resolver& r, const Slot& slot) {

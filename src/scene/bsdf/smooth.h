@@ -76,9 +76,9 @@ inline Rgb albedo(const Dielectric& d, const Vec3& wo) {
   return glm::mix(d.transmittance, d.reflectance, fresnel_dielectric(std::abs(wo.z), eta_across(d.ior, wo)));
 }
 
-/// Reflectance of a pane: R + T^2 R / (1 - R^2) = 2 R / (1 + R).
+/// Reflectance of a pane: R + T^2 R / (1 - R^2) = 2 R / (1 + R); all of it beyond the critical angle of a gap of air.
 inline float pane_reflectance(const ThinDielectric& d, const Vec3& wo) {
-  const float once = fresnel_dielectric(std::abs(wo.z), d.ior > 1 ? d.ior : 1 / d.ior);
+  const float once = fresnel_dielectric(std::abs(wo.z), d.ior);
   return 2 * once / (1 + once);
 }
 inline BsdfEval eval(const ThinDielectric&, const Vec3&, const Vec3&, Mode) { return {}; }

@@ -230,6 +230,41 @@ TEST(RoughBoundary, OnlyWhatIsReflectedInsideComesBack) {
       }
 }
 
+// By reciprocity as much leaves a smooth boundary as enters it, whatever lies beyond the critical angle.
+TEST(RoughBoundary, SmoothOnesOfAnyIndexLetOutWhatTheyLetIn) {
+  for (const float ior : {0.6f, 1.05f, 1.49f, 2.4f, 3.5f}) {
+    Material m = white(MaterialKind::roughplastic, Microfacet::beckmann, 1e-4f);
+    m.ior = ior;
+    m.hides = true;
+    const float expected = float(1 - fresnel_diffuse(ior));
+    EXPECT_NEAR(scene_of({m}).materials[0].entering_table[table_leaving], expected, 0.003f * expected) << ior;
+  }
+}
+
+TEST(RoughBoundary, ColouredRoughnessIsItsLuminanceThroughout) {
+  Material m = white(MaterialKind::roughplastic);
+  m.reflectance = 0.6f;
+  m.alpha_u = m.alpha_v = Slot(Rgb(0.9f, 0.05f, 0.3f));
+  const Resolved coloured = resolved({m});
+  m.alpha_u = m.alpha_v = Slot(luminance(m.alpha_u.value));
+  const Resolved grey = resolved({m});
+  const Vec3 wo = direction(0.4f, 0), wi = direction(0.6f, 1);
+  const float expected = eval(grey.bsdf, wo, wi, Mode::radiance).f.x;
+  EXPECT_NEAR(eval(coloured.bsdf, wo, wi, Mode::radiance).f.x, expected, 1e-5f * expected);
+}
+
+// What crosses a gap of air between panes of glass is reflected beyond the critical angle, all of it.
+TEST(ThinDielectric, GapsReflectTotally) {
+  Material m = white(MaterialKind::thindielectric);
+  m.ior = 1 / 1.5f;
+  m.specular = 1.0f, m.transmittance = 0.0f;
+  const Resolved r = resolved({m});
+  const float once = fresnel_dielectric(std::cos(0.5f), m.ior);
+  EXPECT_NEAR(albedo(r.bsdf, direction(0.5f, 1)).x, 2 * once / (1 + once), 1e-5f);
+  EXPECT_NEAR(albedo(r.bsdf, direction(0.8f, 1)).x, 1, 1e-6f);
+  EXPECT_NEAR(furnace(r.bsdf, direction(0.8f, 1), Mode::radiance).all.x, 1, 1e-6f);
+}
+
 TEST(RoughBoundary, TexturedAlphaInterpolates) {
   for (const float alpha : {0.003f, 0.05f, 0.2f, 0.7f, 1.0f, 1.5f, 3.0f, 20.0f, 100.0f}) {
     Material m = white(MaterialKind::roughplastic, Microfacet::ggx, alpha);
