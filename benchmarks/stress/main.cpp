@@ -249,7 +249,28 @@ int show_lessons(const Arguments& a) {
   return 0;
 }
 
+// Throws Error for what is no group, case or integrator.
+void require_known(const Arguments& a) {
+  std::vector<std::string> groups, names;
+  for (const Case& c : cases()) {
+    if (groups.empty() || groups.back() != c.group) groups.push_back(c.group);
+    if (is_in(c.group, a.groups)) names.push_back(c.name);
+  }
+  const auto require = [](const char* what, const std::vector<std::string>& asked,
+                          const std::vector<std::string>& known) {
+    for (const std::string& one : asked)
+      if (!is_in(one, known))
+        throw Error(fmt::format("there is no {} \"{}\"; there are {}", what, one, fmt::join(known, ", ")));
+  };
+  require("group", a.groups, groups);
+  require("case", a.names, names);
+  require("integrator", a.integrators, integrator_names());
+  if (std::none_of(cases().begin(), cases().end(), [&](const Case& c) { return is_wanted(a, c); }))
+    throw Error("all of these cases are large; add --large");
+}
+
 int measure(const Arguments& a) {
+  require_known(a);
   Table table;
   std::string group;
   for (const Case& c : cases()) {

@@ -11,6 +11,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "ajar/core/bytes.h"
 #include "ajar/core/error.h"
 #include "ajar/core/files.h"
 #include "ajar/film/picture.h"
@@ -103,6 +104,13 @@ bool is_stress(const std::string& suite) {
       fmt::format("{}: needs bench_stress beside ajar; build it, with -DBUILD_TESTING=ON (docs/stress.md)", a.suite));
 }
 
+// Builds of one version are told apart by their bytes.
+std::string build_of_this_program() {
+  std::ifstream file("/proc/self/exe", std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  return fmt::format("{:016x}", checksum(bytes.data(), bytes.size(), 0));
+}
+
 void check_apart(const BenchArguments& a, const Suite& suite) {
   std::vector<Named> written, read = {{"the suite", a.suite}};
   for (const char* name : {"suite.json", "results.json", "results.csv", "report.html", "curves.svg"})
@@ -125,7 +133,7 @@ void run_bench_command(const BenchArguments& a) {
       a.references.empty() ? suite.path.parent_path() / "references" : std::filesystem::path(a.references);
   options.threads = a.threads;
   options.command = command_of(a);
-  options.version = version;
+  options.version = version, options.build = build_of_this_program();
   Line line;
   line.shown = !a.quiet;
   options.watch = [&](const BenchProgress& p) {

@@ -30,7 +30,7 @@ Picture cropped(Picture picture, const std::string& path, const std::vector<int>
 
 Picture read_comparable(const std::string& path, const std::vector<int>& window) {
   Picture picture = cropped(read_picture(path), path, window);
-  require_comparable(picture, path);
+  require_comparable(picture, path, "render it again, or leave it out with --crop");
   return picture;
 }
 

@@ -51,7 +51,7 @@ int main(int argc, char** argv) {
   } catch (const ajar::Interrupted& e) {
     return fail(e.what, ajar::stop_code());
   } catch (const std::bad_alloc&) {
-    return fail("out of memory; try a smaller --size");
+    return fail("out of memory; try a smaller image (--size, or a suite's \"size\")");
   } catch (const std::exception& e) {
     return fail(e.what());
   }

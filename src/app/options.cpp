@@ -60,8 +60,10 @@ void read_decimal(CLI::App& command) {
 
 void refuse_empty(CLI::App& command) {
   for (CLI::Option* option : command.get_options([](CLI::Option*) { return true; }))
-    option->check(
-        [](const std::string& text) { return text.empty() ? "is empty; leave it out, or give it a value" : ""; });
+    option->check([option](const std::string& text) {
+      if (!text.empty()) return "";
+      return option->get_required() ? "is empty; give it a value" : "is empty; leave it out, or give it a value";
+    });
 }
 
 }  // namespace ajar

@@ -147,7 +147,7 @@ void Log::write(const RenderState& state, bool last) {
       {"seconds", state.stats.seconds}, {"cpu_seconds", state.stats.cpu_seconds}, {"spp", state.film.passes}};
   if (const double error = estimated_error(state.film); error < infinity) j["estimated_relmse"] = error;
   if (reference) j["error"] = nlohmann::ordered_json::parse(to_json(compare(develop(state.film), *reference)));
-  j["phases_cpu"] = phases_json(state.stats.cpu_seconds, state.stats.learn_cpu_seconds, state.stats.ledger);
+  j["phases_cpu"] = phases_json(state.stats.cpu_seconds, state.stats.learn_cpu_seconds, state.stats.ticks);
   add_account(j, state);
   errno = 0;
   if (file << j.dump() << std::endl) return;

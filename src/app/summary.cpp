@@ -81,9 +81,9 @@ nlohmann::ordered_json summary(const Run& run, const RenderState& state) {
   j["interrupted"] = run.interrupted;
   const RenderStats& stats = state.stats;
   j["seconds"] = phases_of(run.load_seconds, run.build_seconds,
-                           phases_json(stats.seconds, stats.learn_seconds, stats.ledger), run.write_seconds);
+                           phases_json(stats.seconds, stats.learn_seconds, stats.ticks), run.write_seconds);
   j["cpu_seconds"] = phases_of(run.load_cpu, run.build_cpu,
-                               phases_json(stats.cpu_seconds, stats.learn_cpu_seconds, stats.ledger), run.write_cpu);
+                               phases_json(stats.cpu_seconds, stats.learn_cpu_seconds, stats.ticks), run.write_cpu);
   j["triangles"] = run.triangles;
   j["rays"] = {{"camera", n.camera_rays}, {"light", n.light_rays}, {"shadow", n.shadow_rays}};
   j["rays_per_second"] = per(rays, state.stats.seconds);

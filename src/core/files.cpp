@@ -175,6 +175,11 @@ bool is_there(const std::string& path) {
   return std::filesystem::exists(path, unknown);
 }
 
+void require_readable(const std::string& path) {
+  if (::faccessat(AT_FDCWD, path.c_str(), R_OK, AT_EACCESS) == 0 || errno != EACCES) return;
+  throw Error(fmt::format("{}: may not be read; check its permissions, or name another file", path));
+}
+
 bool is_file(const std::string& path) {
   std::error_code unknown;
   return std::filesystem::is_regular_file(path, unknown);

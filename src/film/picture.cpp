@@ -12,6 +12,7 @@
 #include <set>
 
 #include "ajar/core/error.h"
+#include "ajar/core/files.h"
 #include "ajar/film/tone.h"
 
 namespace ajar {
@@ -78,6 +79,7 @@ std::unique_ptr<OIIO::ImageInput> open_picture(const std::string& path) {
   const auto status = std::filesystem::status(path, ignored);
   if (!std::filesystem::exists(status)) throw Error(fmt::format("{}: there is no such file; check the name", path));
   if (std::filesystem::is_directory(status)) throw Error(fmt::format("{}: is a folder; name an image file", path));
+  require_readable(path);
   OIIO::ImageSpec config;
   config.attribute("oiio:UnassociatedAlpha", 1);  // colours as they are stored
   auto input = OIIO::ImageInput::open(path, &config);

@@ -10,7 +10,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind checkpoint_kind = {"AJARck25", "checkpoint", "render once with --checkpoint",
+constexpr FileKind checkpoint_kind = {"AJARck26", "checkpoint", "render once with --checkpoint",
                                       "start again without --resume"};
 
 // One list of fields for both ways.
@@ -26,6 +26,7 @@ template <class Io, class State>
 void stats_fields(Io& io, State& stats) {
   io.value(stats.counters), io.value(stats.rejected), io.value(stats.seconds), io.value(stats.cpu_seconds);
   io.value(stats.learn_seconds), io.value(stats.learn_cpu_seconds), io.value(stats.ledger);
+  io.value(stats.ticks);
 }
 
 void write(Writer& w, const std::vector<std::string>& texts) {

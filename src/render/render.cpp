@@ -89,7 +89,10 @@ void take_in(const Pass& pass, const Batch& batch, RenderState& state) {
   Film& film = state.film;
   if (film.splats) merge(film, batch.splats);
   if (pass.job.techniques) merge(state.pyramid, film, batch.strategies);
-  for (const Ledger& ledger : batch.ledgers) state.stats.ledger += ledger;
+  for (const Ledger& ledger : batch.ledgers) {
+    state.stats.ledger += ledger;
+    state.stats.ticks.all += total_ticks(ledger), state.stats.ticks.learn += ledger.learn_ticks;
+  }
   note_rejected(state.stats, batch.rejected_at, film, pass.job.seed);
   film.chunks += pass.chunks;
 }

@@ -71,9 +71,9 @@ Json fields_json(const Learning& learning, const Film& film) {
 
 }  // namespace
 
-Json phases_json(double seconds, double between_passes, const Ledger& ledger) {
+Json phases_json(double seconds, double between_passes, const TimedTicks& ticks) {
   const double traced = seconds - between_passes;
-  const double learn = traced * per(double(ledger.learn_ticks), double(total_ticks(ledger)));
+  const double learn = traced * per(double(ticks.learn), double(ticks.all));
   return {{"trace", traced - learn}, {"learn", learn}, {"rebuild", between_passes}};
 }
 

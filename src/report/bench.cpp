@@ -43,7 +43,7 @@ std::optional<Json> find_run(const Bench& bench, const Stand& stand, const Metho
   if (!is_there(path.string())) return {};
   Json file = read_json(path, "delete it, and the run is made again");
   const Json content = file.is_object() ? file.value("content", Json("")) : Json();
-  if (!content.is_string() || !file.contains("run") || !file.contains("reference"))
+  if (!content.is_string() || !file.contains("run") || !is_run(file["run"]) || !file.contains("reference"))
     throw Error(fmt::format("{}: is no run of a bench; delete it", path.string()));
   if (content != stand.content)
     throw Error(fmt::format(
@@ -64,7 +64,8 @@ void write_image(const Bench& bench, const Stand& stand, const std::string& name
 /// Follows a racer, with the share of all that is to be done; false to stop.
 bool watch(Bench& bench, const Stand& stand, const Racer& racer, double done) {
   if (!bench.options.watch) return true;
-  const double left = done > 0 ? (wall_seconds() - bench.start) / done * (bench.units - done) : infinity;
+  const bool known = done > 0.02 * bench.units;  // the first of what a run measures costs more than it renders
+  const double left = known ? (wall_seconds() - bench.start) / done * (bench.units - done) : infinity;
   const std::string what = fmt::format("{} seed {} {}", stand.scene->name, racer.options.seed, racer.method->name);
   const double share = bench.units > 0 ? done / bench.units : 1;  // all runs may be there already
   bench.stopped = !bench.options.watch({what, share, left});
@@ -127,7 +128,7 @@ void run_seed(Bench& bench, const Stand& stand, const LoadedScene& loaded, size_
   std::vector<Racer> racers;
   for (const Method& method : suite.methods)
     if (const uint64_t seed = suite.seeds[seed_index]; !find_run(bench, stand, method, seed))
-      racers.push_back(make_racer(method, *stand.scene, loaded, seed, bench.options.threads));
+      racers.push_back(make_racer(method, loaded, seed, bench.options.threads));
   if (racers.empty()) return;
   const auto follow = [&](const Racer& at_work) {
     double done = bench.done;
@@ -149,7 +150,7 @@ void make_techniques(Bench& bench, const Stand& stand, const LoadedScene& loaded
   for (const Method& method : bench.suite.methods) {
     const fs::path folder = bench.options.folder / "techniques" / stand.scene->name / method.name;
     if (!has_strategies(method.options.integrator) || is_there(folder.string()) || bench.stopped) continue;
-    Racer racer = make_racer(method, *stand.scene, loaded, bench.suite.seeds[0], bench.options.threads);
+    Racer racer = make_racer(method, loaded, bench.suite.seeds[0], bench.options.threads);
     racer.options = with_budget(racer.options, with_amount(all, all.spp > 0 ? std::max(amount, 1.0) : amount));
     racer.options.techniques = true;
     render(*loaded.scene, *loaded.accel, racer.options, racer.state,
@@ -213,6 +214,7 @@ Json results_json(const Bench& bench) {
   const Suite& suite = bench.suite;
   Json json = {{"format", 1},
                {"version", bench.options.version},
+               {"build", bench.options.build},
                {"title", suite.title},
                {"date", date_text()},
                {"machine", machine_json(bench.options.threads)},
@@ -233,7 +235,6 @@ Stand make_stand(const Bench& bench, const BenchScene& scene) {
   stand.json = {{"name", scene.name}, {"file", scene.file}, {"defines", scene.defines}};
   for (const char* key : {"width", "height", "max_depth", "triangles", "load_seconds", "build_seconds"})
     stand.json[key] = nullptr;
-  stand.json["max_depth"] = scene.max_depth;
   stand.json["reference"] = nullptr;
   stand.json["skipped"] = scene.missing.empty() ? Json(nullptr) : Json(scene.missing);
   if (!scene.missing.empty()) return stand;
@@ -241,6 +242,7 @@ Stand make_stand(const Bench& bench, const BenchScene& scene) {
   const Camera& camera = loaded.scene->camera;
   stand.json["width"] = camera.crop_width;
   stand.json["height"] = camera.crop_height;
+  stand.json["max_depth"] = loaded.scene->hints.max_depth;
   stand.content = content_of(*loaded.scene);
   stand.json["triangles"] = count_triangles(*loaded.scene);
   stand.reference = find_reference(bench.suite, scene, *loaded.scene, bench.options);
@@ -259,20 +261,35 @@ void set_reference(const Bench& bench, Stand& stand) {
                              {"made_by", r.made_by}};
 }
 
-/// The folder is this suite's from now on.
+/// The folder is this suite's and this program's from now on.
 void claim_folder(const Bench& bench) {
   const fs::path path = bench.options.folder / "suite.json";
+  const std::string folder = bench.options.folder.string(), elsewhere = "name another folder with -o";
   Json key = to_json(bench.suite);
-  key["version"] = bench.options.version;
-  if (is_there(path.string())) {
-    if (read_json(path, "delete the folder, or name another one with -o") != key)
-      throw Error(fmt::format("{}: holds runs of another suite than {} asks for{}; name another folder with -o",
-                              bench.options.folder.string(), bench.suite.path.string(),
-                              bench.suite.quick ? " with --quick" : ""));
+  key["version"] = bench.options.version, key["build"] = bench.options.build;
+  if (!is_there(path.string())) {
+    make_folder(folder);
+    write_text(path.string(), text_of(key, 1) + "\n");
     return;
   }
-  make_folder(bench.options.folder.string());
-  write_text(path.string(), text_of(key, 1) + "\n");
+  Json there = read_json(path, "delete the folder, or name another one with -o");
+  if (there == key) return;
+  if (there.is_object()) there["version"] = key["version"], there["build"] = key["build"];
+  if (there == key)
+    throw Error(
+        fmt::format("{}: holds runs of another build of Ajar, which are not for one table; {}", folder, elsewhere));
+  throw Error(fmt::format("{}: holds runs of another suite than {} asks for{}; {}", folder, bench.suite.path.string(),
+                          bench.suite.quick ? " with --quick" : "", elsewhere));
+}
+
+/// Throws Error where what is to be made could not be written.
+void check_outputs(const Bench& bench) {
+  const fs::path& folder = bench.options.folder;
+  for (const char* name : {"results.json", "results.csv", "report.html", "curves.svg"})
+    check_file((folder / name).string());
+  for (const Stand& stand : bench.stands)
+    if (stand.scene->missing.empty())
+      for (const char* kind : {"runs", "images"}) check_folder((folder / kind / stand.scene->name).string());
 }
 
 void make_references(Bench& bench) {
@@ -303,6 +320,7 @@ Json run_bench(const Suite& suite, const BenchOptions& options) {
   Bench bench{suite, options};
   for (const BenchScene& scene : suite.scenes) bench.stands.push_back(make_stand(bench, scene));
   claim_folder(bench);
+  check_outputs(bench);
   make_references(bench);
   for (const Stand& stand : bench.stands)
     for (const Method& method : suite.methods)

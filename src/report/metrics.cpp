@@ -36,7 +36,7 @@ double mean_of(const Picture& picture) {
   return sum / double(picture.pixels.size());
 }
 
-void require_comparable(const Picture& picture, const std::string& file) {
+void require_comparable(const Picture& picture, const std::string& file, const char* cure) {
   std::array<size_t, 3> rgb;
   try {
     rgb = rgb_channels(picture);
@@ -50,8 +50,8 @@ void require_comparable(const Picture& picture, const std::string& file) {
     const bool colour = std::find(rgb.begin(), rgb.end(), channel) != rgb.end();
     const bool variance = name == "Variance.R" || name == "Variance.G" || name == "Variance.B";
     if ((!colour && !variance) || (std::isfinite(value) && (value >= 0 || !variance))) continue;
-    throw Error(fmt::format("{}: channel {} of pixel ({}, {}) is {}; render it again, or leave it out with --crop",
-                            file, name, pixel % size_t(picture.width), pixel / size_t(picture.width), value));
+    throw Error(fmt::format("{}: channel {} of pixel ({}, {}) is {}; {}", file, name, pixel % size_t(picture.width),
+                            pixel / size_t(picture.width), value, cure));
   }
 }
 

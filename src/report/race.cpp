@@ -33,11 +33,11 @@ void advance(const LoadedScene& loaded, const Budget& to, const Picture& referen
 
 }  // namespace
 
-Racer make_racer(const Method& method, const BenchScene& scene, const LoadedScene& loaded, uint64_t seed, int threads) {
+Racer make_racer(const Method& method, const LoadedScene& loaded, uint64_t seed, int threads) {
   Racer racer{&method, method.options, {}};
   racer.options.seed = seed;
   racer.options.threads = threads;
-  racer.options.max_depth = scene.max_depth;
+  racer.options.max_depth = loaded.scene->hints.max_depth;
   racer.state = start_render(*loaded.scene, racer.options);
   return racer;
 }
@@ -90,7 +90,7 @@ Json run_json(const Racer& racer) {
               {"seconds", stats.seconds},
               {"cpu_seconds", stats.cpu_seconds},
               {"samples", racer.samples},
-              {"phases_cpu", phases_json(stats.cpu_seconds, stats.learn_cpu_seconds, stats.ledger)},
+              {"phases_cpu", phases_json(stats.cpu_seconds, stats.learn_cpu_seconds, stats.ticks)},
               {"rays", {{"camera", n.camera_rays}, {"light", n.light_rays}, {"shadow", n.shadow_rays}}},
               {"rejected_values", stats.rejected},
               {"field_bytes", bytes(racer.state.learning.fields)},

@@ -17,7 +17,7 @@ struct Racer {
   RenderState state;
   nlohmann::ordered_json samples = nlohmann::ordered_json::array();
 };
-Racer make_racer(const Method& method, const BenchScene& scene, const LoadedScene& loaded, uint64_t seed, int threads);
+Racer make_racer(const Method& method, const LoadedScene& loaded, uint64_t seed, int threads);
 
 /// Times, or samples per pixel, at which errors are measured: five a decade, over three decades up to the budget.
 std::vector<double> make_targets(const Budget& budget);

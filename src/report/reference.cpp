@@ -27,7 +27,7 @@ Json scene_json(const BenchScene& scene, const Scene& loaded) {
           {"content", content_of(loaded)},
           {"defines", scene.defines},
           {"size", {camera.crop_width, camera.crop_height}},
-          {"max_depth", scene.max_depth}};
+          {"max_depth", loaded.hints.max_depth}};
 }
 
 Json request_json(const BenchScene& scene, const Scene& loaded) {
@@ -70,14 +70,16 @@ struct Part {
   }
 };
 
-/// A batch that an earlier run left, if it is of this key.
-bool read_batch(const fs::path& path, const std::string& key, Part& part) {
+/// A batch that an earlier run left, if it is of this key, and whole.
+bool read_batch(const fs::path& path, const std::string& key, Part& part) try {
   if (!is_there(path.string())) return false;
   const Metadata data = read_metadata(path.string());
   const auto found = data.find("ajar:key");
   if (found == data.end() || found->second != Metadata::mapped_type(key)) return false;
   part.add({read_rgb(path.string()), std::get<double>(data.at("ajar:spp"))}, data);
   return true;
+} catch (const Error&) {
+  return false;  // it is made again
 }
 
 /// False when the watch stops it.
@@ -110,12 +112,13 @@ bool collect(const BenchScene& scene, const LoadedScene& loaded, const BenchOpti
       RenderOptions render_options = with_budget(scene.parts[i].options, cuts[i].each);
       render_options.seed = first_seed + uint64_t(i) * (first_seed >> 1) + uint64_t(k);
       render_options.threads = options.threads;
-      render_options.max_depth = scene.max_depth;
+      render_options.max_depth = loaded.scene->hints.max_depth;
       const Json key = {{"scene", scene_json(scene, *loaded.scene)},
                         {"options", options_json(render_options, false)},
                         {"batch", to_json(cuts[i].each)},
                         {"seed", render_options.seed},
-                        {"version", options.version}};
+                        {"version", options.version},
+                        {"build", options.build}};
       const fs::path path = folder / fmt::format("{}-{}-{:03}.exr", i, render_options.integrator, k);
       ++done;
       if (read_batch(path, text_of(key, -1), parts[i])) continue;
@@ -184,6 +187,12 @@ void require_light(const Picture& image, const fs::path& path) {
                     path.string()));
 }
 
+// Where a reference that is made lies, without ".exr" or ".json".
+fs::path reference_stem(const std::string& name, const Scene& scene, const fs::path& folder) {
+  const Camera& camera = scene.camera;
+  return folder / fmt::format("{}-{}x{}-depth{}", name, camera.crop_width, camera.crop_height, scene.hints.max_depth);
+}
+
 Picture read_reference(const fs::path& path, const Camera& camera) {
   Picture image = read_rgb(path.string());
   require_comparable(image, path.string());
@@ -215,6 +224,11 @@ LoadedScene load(const Suite& suite, const BenchScene& scene) {
     throw Error(fmt::format("{}: scenes \"{}\": {}", suite.path.string(), scene.name, error.what()));
   }
   if (scene.width > 0) set_size(loaded.scene->camera, scene.width, scene.height);
+  int& depth = loaded.scene->hints.max_depth;
+  if (scene.max_depth) depth = *scene.max_depth;
+  if (depth == 0 || depth < -1)
+    throw Error(fmt::format("{}: scenes \"{}\": the scene's max_depth is {}; give it another one here",
+                            suite.path.string(), scene.name, depth));
   loaded.load_seconds = wall_seconds() - start;
   return loaded;
 }
@@ -225,16 +239,12 @@ void build(LoadedScene& loaded) {
   loaded.build_seconds = wall_seconds() - start;
 }
 
-fs::path reference_stem(const BenchScene& scene, int width, int height, const fs::path& folder) {
-  return folder / fmt::format("{}-{}x{}-depth{}", scene.name, width, height, scene.max_depth);
-}
-
 std::optional<Reference> find_reference(const Suite& suite, const BenchScene& scene, const Scene& loaded,
                                         const BenchOptions& options) {
   const Camera& camera = loaded.camera;
   if (!scene.reference.empty())
     return Reference{read_reference(scene.reference, camera), {}, {{"image", scene.reference.filename().string()}}};
-  const fs::path stem = reference_stem(scene, camera.crop_width, camera.crop_height, options.references);
+  const fs::path stem = reference_stem(scene.name, loaded, options.references);
   const fs::path image = stem.string() + ".exr", json = stem.string() + ".json";
   if (!is_there(image.string()) || !is_there(json.string())) return {};
   Json made = read_json(json, "delete it, and the reference is made again");
@@ -251,8 +261,7 @@ std::optional<Reference> find_reference(const Suite& suite, const BenchScene& sc
 
 std::optional<Reference> make_reference(const Suite& suite, const BenchScene& scene, const LoadedScene& loaded,
                                         const BenchOptions& options) {
-  const Camera& camera = loaded.scene->camera;
-  const fs::path stem = reference_stem(scene, camera.crop_width, camera.crop_height, options.references);
+  const fs::path stem = reference_stem(scene.name, *loaded.scene, options.references);
   const fs::path folder = stem.string() + ".parts";
   make_folder(folder.string());
   std::array<Part, 2> parts;

@@ -25,7 +25,7 @@ struct LoadedScene {
   std::unique_ptr<Accel> accel;  ///< null before build
   double load_seconds = 0, build_seconds = 0;
 };
-/// Loads with the suite's defines and size. Throws Error that names suite and scene.
+/// Loads with the suite's defines, size and depth (Scene::hints). Throws Error that names suite and scene.
 LoadedScene load(const Suite& suite, const BenchScene& scene);
 void build(LoadedScene& loaded);
 

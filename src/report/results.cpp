@@ -31,6 +31,12 @@ Json value_json(const std::optional<Spread>& s) {
   return {{"value", finite(s->median)}, {"low", finite(s->low)}, {"high", finite(s->high)}};
 }
 
+bool has_numbers(const Json& object, std::initializer_list<const char*> keys) {
+  return object.is_object() && std::all_of(keys.begin(), keys.end(), [&](const char* key) {
+           return object.contains(key) && object[key].is_number();
+         });
+}
+
 const Json* run_of_seed(const Json& runs, const Json& seed) {
   for (const Json& run : runs)
     if (run["seed"] == seed) return &run;
@@ -157,6 +163,20 @@ std::string aligned(const std::vector<std::vector<std::string>>& rows) {
 }
 
 }  // namespace
+
+bool is_run(const Json& run) {
+  if (!has_numbers(run,
+                   {"seed", "spp", "seconds", "cpu_seconds", "rejected_values", "field_bytes", "memory_peak_bytes"}))
+    return false;
+  for (const char* key : {"samples", "strategies"})
+    if (!run.contains(key) || !run[key].is_array()) return false;
+  for (const char* key : {"phases_cpu", "rays", "tracing", "mean_path_edges"})
+    if (!run.contains(key) || !run[key].is_object()) return false;
+  return std::all_of(run["samples"].begin(), run["samples"].end(), [](const Json& sample) {
+    return sample.contains("estimated_relmse") &&
+           has_numbers(sample, {"seconds", "cpu_seconds", "spp", "mse", "relmse", "relmse_trimmed", "mape", "ssim"});
+  });
+}
 
 Curve curve_of(const Json& run, const std::string& metric, const char* against) {
   Curve curve;

@@ -9,6 +9,8 @@
 
 namespace ajar {
 
+/// Whether all is there that the functions below and the report ask of a run.
+bool is_run(const nlohmann::ordered_json& run);
 /// Error of one run against "seconds", "cpu_seconds" or "spp".
 Curve curve_of(const nlohmann::ordered_json& run, const std::string& metric, const char* against);
 

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "ajar/core/error.h"
+#include "ajar/core/files.h"
 #include "ajar/core/srgb.h"
 #include "ajar/scene/texture.h"
 #include "primaries.h"
@@ -246,6 +247,7 @@ void drop_idle_alpha(Image& image) {
 }  // namespace
 
 Image load_image(const std::string& path, const ImageOptions& options) {
+  require_readable(path);
   check_png(path);
   OIIO::ImageSpec config;
   config.attribute("oiio:UnassociatedAlpha", 1);  // colours as they are stored

@@ -101,6 +101,12 @@ TEST_F(Render, AccountIsRecorded) {
   EXPECT_EQ(logged["phases_cpu"]["rebuild"], 0);
 }
 
+// Also the time of passes that are not in the image.
+TEST_F(Render, RecordsTellOfTheTimeOfLessons) {
+  const auto json = run({"--integrator", "guided-path", "--train", "32", "--spp", "1", "--size", "32x32"});
+  EXPECT_GT(json["cpu_seconds"]["learn"], 0);
+}
+
 TEST_F(Render, WhatGoesOnWithoutLearningTellsOfNoFields) {
   run({"--spp", "2", "--checkpoint", state});
   EXPECT_FALSE(run({"--spp", "4", "--resume", state}).contains("fields"));

@@ -195,6 +195,17 @@ TEST_F(PictureFile, WritesThatFailSayWhyAndLeaveNothing) {
   EXPECT_EQ(file_count(), 1u);
 }
 
+TEST_F(PictureFile, WhatMayNotBeReadIsToldAsSuch) {
+  write_exr(file("a.exr"), noise(4, 4, {"R", "G", "B"}));
+  fs::permissions(file("a.exr"), fs::perms::none);
+  fs::permissions(folder, fs::perms::all);
+  const uid_t user = ::geteuid(), nobody = 65534;
+  ASSERT_EQ(::seteuid(user == 0 ? nobody : user), 0);  // root may read anything
+  const std::string error = error_of([&] { read_picture(file("a.exr")); });
+  ASSERT_EQ(::seteuid(user), 0);
+  EXPECT_NE(error.find("a.exr: may not be read; check its permissions"), std::string::npos) << error;
+}
+
 TEST_F(PictureFile, FullDiskLeavesTheOldFile) {
   write_text(file("a.exr"), "old");
   rlimit old{};

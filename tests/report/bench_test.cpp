@@ -169,7 +169,7 @@ TEST_F(Bench, ARunThatIsMissingIsMade) {
 // Nobody wrote them by hand: what helps is to make them again.
 TEST_F(Bench, DamagedRecordsAreNamedWithTheirCure) {
   run(small());
-  const std::string reference = reference_stem(suite(small()).scenes[0], 16, 12, options.references).string() + ".json";
+  const std::string reference = (options.references / "s-16x12-depth3.json").string();
   for (const auto& [file, cure] : {std::pair{options.folder / "runs/s/p-seed1.json", "the run is made again"},
                                    {options.folder / "suite.json", "name another one with -o"},
                                    {fs::path(reference), "the reference is made again"}}) {
@@ -211,6 +211,75 @@ TEST_F(Bench, AFolderOfAnotherSuiteIsRefused) {
   EXPECT_EQ(error_of(other), "");
 }
 
+TEST_F(Bench, AFolderOfAnotherBuildIsRefused) {
+  run(small());
+  options.build = "other";
+  EXPECT_NE(error_of(small()).find("out: holds runs of another build of Ajar"), std::string::npos) << error_of(small());
+  fs::remove_all(options.folder);
+  EXPECT_EQ(run(small())["build"], "other");
+}
+
+// As ajar render does.
+TEST_F(Bench, DepthIsTheScenesUnlessTheSuiteSaysOtherwise) {
+  Json json = small();
+  json["scenes"][0].erase("max_depth");
+  EXPECT_EQ(run(json)["scenes"][0]["max_depth"], -1) << "the box says no more";
+  EXPECT_TRUE(fs::exists(options.references / "s-16x12-depth-1.exr"));
+  json["scenes"][0]["defines"] = {{"max_depth", "3"}};
+  options.folder = folder / "three";
+  const Json three = run(json);
+  EXPECT_EQ(three["scenes"][0]["max_depth"], 3);
+  options.folder = folder / "told", options.references = folder / "references of it";
+  const Json told = run(small());
+  for (const Json& method : three["scenes"][0]["methods"])
+    for (const Json& other : told["scenes"][0]["methods"])
+      if (method["name"] == other["name"]) {
+        EXPECT_EQ(method["runs"][0]["rays"], other["runs"][0]["rays"]) << method["name"];
+      }
+}
+
+TEST_F(Bench, WhereNothingCanBeWrittenNothingIsRendered) {
+  run(small());
+  fs::remove_all(options.folder / "runs");
+  std::ofstream(options.folder / "runs") << "a file";
+  int seen = 0;
+  options.watch = [&](const BenchProgress&) { return ++seen, true; };
+  EXPECT_NE(error_of(small()).find("runs"), std::string::npos) << error_of(small());
+  fs::remove(options.folder / "runs");
+  fs::remove(options.folder / "results.csv");
+  fs::create_directories(options.folder / "results.csv");
+  EXPECT_NE(error_of(small()).find("results.csv"), std::string::npos) << error_of(small());
+  EXPECT_EQ(seen, 0);
+}
+
+TEST_F(Bench, DamagedBatchesAreMadeAgain) {
+  int seen = 0;
+  options.watch = [&](const BenchProgress&) { return ++seen < 50; };
+  EXPECT_TRUE(run(small())["interrupted"]);
+  const fs::path batch = options.references / "s-16x12-depth3.parts" / "0-bdpt-000.exr";
+  ASSERT_TRUE(fs::exists(batch));
+  std::ofstream(batch) << "no image";
+  seen = -1000;
+  EXPECT_FALSE(run(small())["interrupted"]);
+}
+
+TEST_F(Bench, RunsThatLackWhatIsAskedOfThemAreTold) {
+  run(small());
+  const fs::path path = options.folder / "runs/s/p-seed0.json";
+  const Json whole = Json::parse(kit::bytes_of(path));
+  for (const auto& [pointer, value] : std::vector<std::pair<std::string, Json>>{{"/run", Json::object()},
+                                                                                {"/run/seed", nullptr},
+                                                                                {"/run/samples", Json::object()},
+                                                                                {"/run/samples/0/relmse", nullptr},
+                                                                                {"/run/tracing", nullptr}}) {
+    Json file = whole;
+    file[Json::json_pointer(pointer)] = value;
+    std::ofstream(path) << file;
+    EXPECT_NE(error_of(small()).find("p-seed0.json: is no run of a bench; delete it"), std::string::npos)
+        << pointer << " " << error_of(small());
+  }
+}
+
 TEST_F(Bench, WhatIsNoRunIsToldAsSuch) {
   run(small());
   const fs::path path = options.folder / "runs/s/p-seed0.json";
@@ -223,7 +292,7 @@ TEST_F(Bench, WhatIsNoRunIsToldAsSuch) {
 
 TEST_F(Bench, AnotherReferenceIsRefused) {
   run(small());
-  const fs::path stem = reference_stem(suite(small()).scenes[0], 16, 12, options.references);
+  const fs::path stem = options.references / "s-16x12-depth3";
   Picture image = read_picture(stem.string() + ".exr");
   image.pixels[0] += 1;
   write_exr(stem.string() + ".exr", image, {}, PixelType::half);
@@ -242,7 +311,7 @@ TEST_F(Bench, AChangedSceneIsRefused) {
   run(json);
   std::ofstream(folder / "box/room.xml", std::ios::app) << " ";
   EXPECT_NE(error_of(json).find("s-16x12-depth3.json: was made from another scene"), std::string::npos);
-  const fs::path stem = reference_stem(suite(json).scenes[0], 16, 12, options.references);
+  const fs::path stem = options.references / "s-16x12-depth3";
   fs::copy(stem.string() + ".exr", folder / "right.exr");
   json["scenes"][0]["reference"] = {{"image", (folder / "right.exr").string()}};
   options.folder = folder / "other";
@@ -254,8 +323,7 @@ TEST_F(Bench, AChangedSceneIsRefused) {
 
 TEST_F(Bench, ReferenceIsMadeOnceAndKept) {
   const Json results = run(small());
-  const fs::path stem = reference_stem(suite(small()).scenes[0], 16, 12, options.references);
-  EXPECT_EQ(stem.filename(), "s-16x12-depth3");
+  const fs::path stem = options.references / "s-16x12-depth3";
   EXPECT_FALSE(fs::exists(stem.string() + ".parts"));
   const Json json = Json::parse(kit::bytes_of(stem.string() + ".json"));
   EXPECT_EQ(json["made"][0]["integrator"], "bdpt");
@@ -282,7 +350,7 @@ TEST_F(Bench, ReferenceIsMadeOnceAndKept) {
 
 TEST_F(Bench, ReferenceGoesOnFromItsBatches) {
   run(small());
-  const fs::path stem = reference_stem(suite(small()).scenes[0], 16, 12, options.references);
+  const fs::path stem = options.references / "s-16x12-depth3";
   const std::string straight = kit::bytes_of(stem.string() + ".exr");
   fs::remove_all(options.folder);
   fs::remove_all(options.references);
@@ -306,7 +374,7 @@ TEST_F(Bench, IntegratorsThatDisagreeMakeNoReference) {
   const std::string error = error_of(json);
   EXPECT_NE(error.find("scenes \"s\".reference: light and path disagree: channel "), std::string::npos) << error;
   EXPECT_NE(error.find("has means "), std::string::npos);
-  const fs::path stem = reference_stem(suite(json).scenes[0], 32, 24, options.references);
+  const fs::path stem = options.references / "s-32x24-depth5";
   EXPECT_FALSE(fs::exists(stem.string() + ".exr"));
   EXPECT_TRUE(fs::exists(stem.string() + ".parts")) << "a longer run goes on from here";
 }
@@ -316,7 +384,7 @@ TEST_F(Bench, ABlackReferenceIsRefused) {
   json["scenes"][0]["file"] = kit::source_path("scenes/mirrors/mirrors.xml");
   json["scenes"][0]["max_depth"] = 5;
   EXPECT_NE(error_of(json).find("s-16x12-depth5.exr: is black"), std::string::npos) << error_of(json);
-  EXPECT_FALSE(fs::exists(reference_stem(suite(json).scenes[0], 16, 12, options.references).string() + ".exr"));
+  EXPECT_FALSE(fs::exists(options.references / "s-16x12-depth5.exr"));
 }
 
 TEST_F(Bench, ScenesAreLoadedBeforeAnythingIsMade) {

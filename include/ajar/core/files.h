@@ -39,6 +39,8 @@ void write_text(const std::string& path, const std::string& text);
 bool is_there(const std::string& path);
 /// The same of a regular file.
 bool is_file(const std::string& path);
+/// Throws Error where a file is there that may not be read.
+void require_readable(const std::string& path);
 /// Names of all that lies in a folder, in order, with the folder's before them; of what cannot be read as much as can.
 std::vector<std::filesystem::path> files_in(const std::string& folder);
 /// Makes a folder and those above it; one that is there already will do. Throws Error.

@@ -15,9 +15,15 @@
 
 namespace ajar {
 
+/// Of the clock, in timed samples of all passes, also of those that are not in the image.
+struct TimedTicks {
+  uint64_t all = 0, learn = 0;  ///< learn: of these, recording what was seen
+};
+
 struct RenderStats {
   Counters counters;
-  Ledger ledger;                                    ///< of what is in the image: without dropped passes
+  Ledger ledger;  ///< of what is in the image: without dropped passes
+  TimedTicks ticks;
   uint64_t rejected = 0;                            ///< values dropped for not being finite and non-negative (law 6)
   std::vector<std::string> replay;                  ///< what replays the first of them
   double seconds = 0, cpu_seconds = 0;              ///< of tracing, merging and learning; sums over resumed parts

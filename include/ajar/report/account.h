@@ -11,7 +11,7 @@ namespace ajar {
 
 /// A render's seconds split into "trace", "learn" (recording what paths see, as a share of tracing estimated from the
 /// timed samples) and "rebuild" (making the next fields between passes).
-nlohmann::ordered_json phases_json(double seconds, double between_passes, const Ledger& ledger);
+nlohmann::ordered_json phases_json(double seconds, double between_passes, const TimedTicks& ticks);
 
 /// Adds to a record "mean_path_edges", "light_subpaths_per_sample", "camera_samples_of_a_pass" where guided passes have
 /// them, "goes_on", "zero_contribution_paths", "tracing" (shares of the tracing time), "fields" where anything is

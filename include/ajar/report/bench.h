@@ -25,6 +25,7 @@ struct BenchOptions {
   std::filesystem::path references;  ///< folder of references that are made once
   int threads = 0;                   ///< 0: all
   std::string command, version;      ///< for the record
+  std::string build;                 ///< what tells this program from others of its version
   BenchWatch watch;                  ///< may be empty
 };
 
@@ -33,10 +34,6 @@ struct BenchOptions {
 /// done and "interrupted": true; called again it goes on. Throws Error, before anything is rendered where that can be
 /// known: also when the folder holds another suite's runs.
 nlohmann::ordered_json run_bench(const Suite& suite, const BenchOptions& options);
-
-/// Where a reference that is made for the scene lies, without ".exr" or ".json".
-std::filesystem::path reference_stem(const BenchScene& scene, int width, int height,
-                                     const std::filesystem::path& folder);
 
 /// results.csv: one row per sample.
 std::string results_csv(const nlohmann::ordered_json& results);

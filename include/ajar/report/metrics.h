@@ -65,7 +65,7 @@ Picture difference_picture(const Picture& image, const Picture& reference);
 
 /// Throws Error unless the picture has channels R, G, B or is grey, these and its variances are finite, and no variance
 /// is negative; the message names the channel, the pixel and the file.
-void require_comparable(const Picture& picture, const std::string& file);
+void require_comparable(const Picture& picture, const std::string& file, const char* cure = "render it again");
 
 /// One JSON line without the line's end, keys in a fixed order; z figures are null without variance.
 std::string to_json(const Metrics& metrics);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,8 +36,8 @@ struct BenchScene {
   std::filesystem::path path;
   std::string missing;  ///< why an optional scene is left out; empty otherwise
   std::map<std::string, std::string> defines;
-  int width = 0, height = 0;  ///< 0: the scene's own
-  int max_depth = -1;
+  int width = 0, height = 0;         ///< 0: the scene's own
+  std::optional<int> max_depth;      ///< edges, -1: unlimited; nothing: the scene's own
   std::filesystem::path reference;   ///< an image that is there; empty: made from the parts
   std::vector<ReferencePart> parts;  ///< two, of different integrators
 };
