@@ -54,8 +54,8 @@ void bend_by_map(Resolver& r, const Material& m) {
 }
 
 Facets facets(const Resolver& r, const Material& m) {
-  return {std::max(look_scalar(r, m.alpha_u), min_alpha), std::max(look_scalar(r, m.alpha_v), min_alpha),
-          m.distribution};
+  const auto look = [&](const Slot& alpha) { return std::clamp(look_scalar(r, alpha), min_alpha, max_alpha); };
+  return {look(m.alpha_u), look(m.alpha_v), m.distribution};
 }
 
 // Diffuse light that enters, bounces inside under the boundary and leaves: internal reflectance is 1 - leaving / eta^2.
@@ -79,8 +79,8 @@ void set_plastic(const Resolver& r, const Material& m, Lobe& lobe) {
 
 void set_roughplastic(const Resolver& r, const Material& m, Lobe& lobe) {
   const Rgb rho = look(r, m.reflectance), specular = look(r, m.specular);
-  const float u = std::max(look_scalar(r, m.alpha_u), min_alpha);
-  const Facets f{u, m.inner == Inner::lost ? std::max(look_scalar(r, m.alpha_v), min_alpha) : u, m.distribution};
+  Facets f = facets(r, m);
+  if (m.inner != Inner::lost) f.alpha_v = f.alpha_u;
   const TableRow row = table_row_of(m, f.alpha_u);
   lobe.kind = LobeKind::roughplastic;
   lobe.roughplastic = {row.at, row.between, Rgb(0), specular, m.ior, specular_share(specular, rho), f};

@@ -51,9 +51,8 @@ void distribution(Params& p, Material& m) {
 
 // Surfaces are from 0 to 1; far beyond, the numbers of a lobe leave their range.
 void limit_width(Params& p, const char* name, const Slot& s) {
-  constexpr float widest = 100;
-  if (s.texture == none && max_component(s.value) > widest)
-    fail(p.loader, p.node, fmt::format("{} should be at most {}", name, widest));
+  if (s.texture == none && max_component(s.value) > max_alpha)
+    fail(p.loader, p.node, fmt::format("{} should be at most {}", name, max_alpha));
 }
 
 // Microfacets are never smoother than min_alpha.
@@ -201,7 +200,8 @@ void principled(Params& p, Material& m) {
   if (has(p, "specular")) {  // Burley 2012: reflectance at normal incidence is 0.08 times this
     const double specular = number(p, "specular", 0.5);
     if (!(specular >= 0 && specular <= 1)) fail(p.loader, p.node, "specular should be from 0 to 1");
-    m.ior = float(2 / (1 - std::sqrt(0.08 * specular)) - 1);
+    constexpr double least = 1e-3;  // Mitsuba's in place of 0
+    m.ior = float(2 / (1 - std::sqrt(0.08 * (specular > 0 ? specular : least))) - 1);
   }
   if (!(m.ior >= 1e-3f && m.ior <= 1e3f)) fail(p.loader, p.node, "eta should be an index of refraction: 1.5");
 }

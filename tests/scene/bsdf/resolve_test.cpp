@@ -271,6 +271,29 @@ TEST(Resolve, BentNormalStaysOutside) {
   EXPECT_EQ(resolved({map, grey(1)}).surface.frame.n, Vec3(0, 0, 1));
 }
 
+// Of textures whose numbers are far beyond any roughness the diffuse part is left.
+TEST(Resolve, RoughnessOfTexturesHasALimit) {
+  Material m = material(MaterialKind::roughplastic);
+  m.reflectance = 0.5f, m.specular = 0.0f;
+  m.alpha_u.texture = m.alpha_v.texture = 0;
+  Scene scene;
+  Texture texture;
+  texture.kind = TextureKind::scale;
+  texture.color0 = Slot(1e10f), texture.color1 = Slot(1e10f);
+  scene.textures = {texture};
+  scene.materials = {m};
+  scene.shapes.emplace_back();
+  prepare_materials(scene);
+  Surface at;
+  at.shape = 0;
+  at.frame = make_frame(Vec3(0, 0, 1));
+  Frame bent = at.frame;
+  Bsdf bsdf;
+  resolve(scene, at, {0, 0, 1}, bent, bsdf);
+  const float f = eval(bsdf, {0, 0, 1}, direction(0.5f, 1), Mode::radiance).f.x;
+  EXPECT_TRUE(f > 0 && f < 0.5f * inv_pi) << f;
+}
+
 // The bent normal is the normal of the surface displaced along its normal, here by finite differences.
 TEST(Resolve, BumpMapIsTheDisplacedSurface) {
   Scene scene;

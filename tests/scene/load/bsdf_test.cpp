@@ -187,6 +187,7 @@ TEST(Bsdf, Principled) {
       bsdf("principled", number("main_specular_sampling_rate", 2) + number("diffuse_reflectance_sampling_rate", 2)));
   EXPECT_FALSE(says(hinted.notes, "sampling_rate"));
   EXPECT_SAYS(error_of(bsdf("principled", number("specular", -1))), "specular should be");
+  EXPECT_NEAR(last(bsdf("principled", number("specular", 0))).ior, 1.01805, 1e-5);  // as of 0.001
   EXPECT_FLOAT_EQ(last(bsdf("principled", number("eta", 0.67))).ior, 0.67f);  // a bubble
   for (const double eta : {0.0, 1e-4, 2e3})
     EXPECT_SAYS(error_of(bsdf("principled", number("eta", eta))), "eta should be") << eta;

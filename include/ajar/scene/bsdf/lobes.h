@@ -11,13 +11,16 @@ namespace ajar {
 
 /// Statistics of a microfacet surface: widths of the slope distribution along s and t.
 struct Facets {
-  float alpha_u, alpha_v;  ///< at least min_alpha
+  float alpha_u, alpha_v;  ///< from min_alpha to max_alpha
   Microfacet kind;
 };
 inline float narrower(const Facets& f) { return std::min(f.alpha_u, f.alpha_v); }
 
 /// Roughness below this is raised to it: float half vectors resolve no finer peak, and images do not show one.
 inline constexpr float min_alpha = 1e-4f;
+/// Of a texture's roughness no more is taken; loaders refuse more of a number. Squares of it are far from what floats
+/// hold.
+inline constexpr float max_alpha = 100;
 
 /// A rough boundary whose indices differ by less is taken as smooth: its half vectors would be rounding noise.
 inline constexpr float min_ior_step = 1e-3f;
