@@ -57,6 +57,17 @@ std::vector<Point> common(const std::vector<Curve>& curves) {
   return points;
 }
 
+/// What errors are drawn against: what the budget is given in, where all seeds end, so that lines end at the errors of
+/// the tables.
+struct Clock {
+  const char *key, *name;
+};
+Clock clock_of(const json& budget) {
+  if (budget.value("spp", 0.0) > 0) return {"spp", "samples per pixel"};
+  if (budget.value("seconds", 0.0) > 0) return {"seconds", "seconds"};
+  return {"cpu_seconds", "CPU seconds"};
+}
+
 std::vector<Line> lines_of(const json& scene, const char* clock, std::vector<std::string>& names) {
   std::vector<Line> lines;
   for (const json& method : scene.value("methods", json::array())) {
@@ -170,12 +181,12 @@ std::string names(const Panel& p, const std::vector<Line>& lines) {
 }  // namespace
 
 std::string curves_svg(const json& results) {
-  const bool wall = results.at("budget").value("seconds", 0.0) > 0;
+  const Clock clock = clock_of(results.at("budget"));
   std::vector<std::string> methods;
   std::string panels;
   size_t n = 0;
   for (const json& scene : results.at("scenes")) {
-    const std::vector<Line> lines = lines_of(scene, wall ? "seconds" : "cpu_seconds", methods);
+    const std::vector<Line> lines = lines_of(scene, clock.key, methods);
     if (lines.empty()) continue;
     const Panel p = panel_of(lines, panel_width * double(n % 2), head + panel_height * double(n / 2));
     panels += fmt::format("<text x='{:.1f}' y='{:.1f}' class='name'>{}, {}x{}</text>\n", p.x.from, p.y.to - 9,
@@ -184,7 +195,7 @@ std::string curves_svg(const json& results) {
     for (const Line& l : lines) panels += drawn(p, l);
     panels += names(p, lines);
     panels += fmt::format("<text x='{:.1f}' y='{:.1f}' class='tick' text-anchor='middle'>{}</text>\n",
-                          (p.x.from + p.x.to) / 2, p.y.from + 32, wall ? "seconds" : "CPU seconds");
+                          (p.x.from + p.x.to) / 2, p.y.from + 32, clock.name);
     ++n;
   }
   if (n == 0) return {};

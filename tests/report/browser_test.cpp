@@ -1,4 +1,4 @@
-// The page in a browser without a window: a script drives it as a reader does (selftest.js).
+// The page in a browser without a window: scripts drive it as readers do (drive.js).
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -85,32 +85,33 @@ std::string open_page(const std::string& program, const std::filesystem::path& f
   return kit::bytes_of(folder / "log.txt");
 }
 
-class Browser : public testing::TestWithParam<const char*> {};
-
-TEST_P(Browser, PageWorks) {
-  const std::string program = browser();
-  if (program.empty()) GTEST_SKIP() << "needs Chromium (Debian: chromium), which is not there; the page was not tried";
+std::filesystem::path empty_folder(const std::string& name) {
   // Stays in the build folder, to be looked at.
-  const std::filesystem::path folder = std::filesystem::current_path() / fmt::format("page-{}", GetParam());
+  const std::filesystem::path folder = std::filesystem::current_path() / name;
   std::filesystem::remove_all(folder);
-  const json results = test::make_synthetic(folder);
+  return folder;
+}
+
+/// Writes the page and opens it with a script of tests/report that gets what it compares with.
+void drive(const json& results, const json& expected, const std::string& script, const std::filesystem::path& folder,
+           const std::string& window, size_t fewest_checks) {
   write_report(results, folder);
   std::string page = kit::bytes_of(folder / "report.html");
-  const std::string expected = expectations(results, folder).dump();
   insert(page, "<title>",
          "<script>const errors = [];\n"
          "for (const kind of ['error', 'unhandledrejection', 'securitypolicyviolation'])\n"
          "  addEventListener(kind, event => errors.push(`${kind}: ${event.message ?? event.reason ?? "
          "event.blockedURI}`));\n"
          "</script>\n");
-  std::string quoted;  // the name of the second scene holds "</script>"
-  for (const char c : expected) quoted += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  std::string quoted;  // a name may hold "</script>"
+  for (const char c : expected.dump()) quoted += c == '<' ? std::string("\\u003c") : std::string(1, c);
   insert(page, "</body>",
          "<script type=\"module\">const expected = " + quoted + ";\n" +
-             kit::bytes_of(kit::source_path("tests/report/selftest.js")) + "</script>\n");
+             kit::bytes_of(kit::source_path("tests/report/drive.js")) +
+             kit::bytes_of(kit::source_path("tests/report/" + script)) + "</script>\n");
   write_text((folder / "driven.html").string(), page);
 
-  const std::string log = open_page(program, folder, GetParam());
+  const std::string log = open_page(browser(), folder, window);
   ASSERT_NE(log.find("\ndone\""), std::string::npos) << "the script did not come to its end\n" << log;
   std::istringstream lines(log);
   size_t passed = 0;
@@ -119,7 +120,30 @@ TEST_P(Browser, PageWorks) {
     EXPECT_FALSE(line.starts_with("FAIL ")) << line;
     EXPECT_TRUE(line.find(":CONSOLE") == std::string::npos || line.ends_with("\"selftest")) << line;
   }
-  EXPECT_GE(passed, 69u);
+  EXPECT_GE(passed, fewest_checks);
+}
+
+class Browser : public testing::TestWithParam<const char*> {
+  void SetUp() override {
+    if (browser().empty())
+      GTEST_SKIP() << "needs Chromium (Debian: chromium), which is not there; the page was not tried";
+  }
+};
+
+TEST_P(Browser, PageWorks) {
+  const std::filesystem::path folder = empty_folder(fmt::format("page-{}", GetParam()));
+  const json results = test::make_synthetic(folder);
+  drive(results, expectations(results, folder), "selftest.js", folder, GetParam(), 69);
+}
+
+/// A budget in samples: some seeds are faster, and all end at the same samples.
+TEST_P(Browser, SamplesAsBudget) {
+  const std::filesystem::path folder = empty_folder(fmt::format("samples-{}", GetParam()));
+  json results = test::make_synthetic(folder);
+  results["budget"] = {{"spp", 273}};  // bdpt's
+  for (json& method : results["scenes"][0]["methods"])
+    for (json& sample : method["runs"][0]["samples"]) sample["cpu_seconds"] = sample["cpu_seconds"].get<double>() / 9;
+  drive(results, {}, "samplestest.js", folder, GetParam(), 5);
 }
 
 INSTANTIATE_TEST_SUITE_P(Windows, Browser, testing::Values("1280,900", "420,800"), [](const auto& window) {

@@ -67,6 +67,19 @@ TEST(Curves, BandHoldsTheSpreadOfTheSeeds) {
   EXPECT_EQ(curves_svg(results({1})).find("<polygon"), std::string::npos) << "one seed has none";
 }
 
+TEST(Curves, EndAtTheEndOfABudgetInSamples) {
+  json by_samples = results({1, 1, 1});
+  by_samples["budget"] = {{"spp", 80}};
+  auto& runs = by_samples["scenes"][0]["methods"][0]["runs"];
+  for (json& sample : runs[0]["samples"]) sample["cpu_seconds"] = sample["cpu_seconds"].get<double>() / 2;  // faster
+  const std::string svg = curves_svg(by_samples);
+  const std::vector<double> at = points(svg);
+  ASSERT_EQ(at.size(), 6U) << svg;
+  EXPECT_NEAR(at[5], tick(svg, 1, "0.1"), 0.11) << "the error of all seeds at the end";
+  EXPECT_NEAR(at[4] - at[2], (at[2] - at[0]) * std::log(5) / std::log(2), 0.2) << "8, 16, 80";
+  EXPECT_NE(svg.find(">samples per pixel</text>"), std::string::npos);
+}
+
 TEST(Curves, NamesCannotBreakOut) {
   const std::string svg = curves_svg(results({1}));
   EXPECT_NE(svg.find(">a&lt;b</text>"), std::string::npos);

@@ -53,7 +53,13 @@ function write_scene(scene, main) {
     section.append(el('p', {class: 'note'}, `Left out: ${scene.skipped ?? 'no results'}`));
     return;
   }
-  section.append(el('h3', {}, 'Error against time'));
+  const heading = el('h3');
+  const name_clock = () => {
+    heading.textContent = `Error against ${clocks[shown.clock].title}`;
+  };
+  shown.watchers.push(name_clock);
+  name_clock();
+  section.append(heading);
   write_curves(scene, section);
   write_bars(scene, section);
   write_comparer(scene, section);

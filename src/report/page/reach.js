@@ -78,16 +78,17 @@ function write_curves(scene, parent) {
     if (state.error !== null) plot.firstElementChild?.aim_at?.(state.error);
   }
   function refresh() {
-    const curves = curves_of(scene);
+    const curves = curves_of(scene), {title} = clocks[shown.clock];
     side.replaceChildren();
     state.error = null;
     if (curves.length > 0) {
       Object.assign(state, reach_range(curves));
       side.append(
           el('h4', {}, 'At the end of the budget'), ...legend(scene).filter(Boolean),
-          el('h4', {}, 'Time to reach an error'), labelled('', control, value), times,
+          el('h4', {}, `${title[0].toUpperCase()}${title.slice(1)} to reach an error`), labelled('', control, value),
+          times,
           el('p', {class: 'note'},
-             'Gain: the baseline\'s time over this method\'s, paired by seed. Or click on the plot.'));
+             `Gain: the baseline's ${title} over this method's, paired by seed. Or click on the plot.`));
       aim(state.start);
     }
     if (plot.clientWidth) draw(Math.floor(plot.clientWidth));
