@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 
 #include "ajar/report/statistics.h"
@@ -104,21 +105,72 @@ std::vector<Tick> ticks(const Axis& axis) {
   return out;
 }
 
-constexpr double panel_width = 420, panel_height = 290, head = 52;
+/// At most so many pixels wide, as the widest of the usual fonts has it.
+double width_of(const std::string& text, double font_size) {
+  double em = 0;
+  for (const char c : text) {
+    const auto among = [c](std::string_view letters) { return letters.find(c) != letters.npos; };
+    if ((uint8_t(c) & 0xc0) == 0x80) continue;  // belongs to the letter before
+    em += among(" !'(),-./:;I[]fijlrt|") ? 0.48 : among("MWmw%@&+<=>#~") || uint8_t(c) >= 0x80 ? 1 : 0.64;
+    if (among("ABCDEFGHJKLNOPQRSTUVXYZ")) em += 0.15;
+  }
+  return em * font_size;
+}
+
+/// Without its last letter.
+std::string shorter(std::string text) {
+  while (!text.empty() && (uint8_t(text.back()) & 0xc0) == 0x80) text.pop_back();
+  if (!text.empty()) text.pop_back();
+  return text;
+}
+
+/// Lines that are no wider, broken at spaces; inside of words that are wider.
+std::vector<std::string> wrapped(std::string text, double font_size, double width) {
+  std::vector<std::string> lines;
+  while (width_of(text, font_size) > width) {
+    std::string line = text;
+    while (width_of(line, font_size) > width && line.size() > 1) line = shorter(line);
+    if (const size_t space = text.rfind(' ', line.size()); space != text.npos && space > 0) line.resize(space);
+    text.erase(0, line.size() + (text[line.size()] == ' '));
+    lines.push_back(line);
+  }
+  lines.push_back(text);
+  return lines;
+}
+
+/// Sizes of a panel, the same for all.
+struct Sheet {
+  double width, height, names;  ///< names: room for those of methods, beside the plot
+};
+
+std::string title_of(const json& scene) {
+  return fmt::format("{}, {}x{}", scene.at("name").get<std::string>(), scene.at("width").get<int>(),
+                     scene.at("height").get<int>());
+}
+
+/// Large enough for the longest names, and for as many of them as there are.
+Sheet sheet_of(const std::vector<std::string>& methods, const std::vector<std::string>& titles) {
+  constexpr double left = 58, plot = 262, bold = 1.15;
+  Sheet sheet = {0, std::max(290.0, 70 + 13 * double(methods.size())), 100};
+  for (const std::string& name : methods) sheet.names = std::max(sheet.names, 15 + width_of(name, 12));
+  sheet.width = left + plot + sheet.names;
+  for (const std::string& title : titles) sheet.width = std::max(sheet.width, left + 12 + bold * width_of(title, 12));
+  return sheet;
+}
 
 struct Panel {
   Axis x, y;
 };
 
-Panel panel_of(const std::vector<Line>& lines, double left, double top) {
+Panel panel_of(const std::vector<Line>& lines, const Sheet& sheet, double left, double top) {
   double first = INFINITY, last = 0, least = INFINITY, most = 0;
   for (const Line& l : lines)
     for (const Point& p : l.points) {
       first = std::min(first, p.time), last = std::max(last, p.time);
       least = std::min(least, p.error.low), most = std::max(most, p.error.high);
     }
-  return {{first / 1.1, last * 1.1, left + 58, left + panel_width - 100},
-          {least / 1.25, most * 1.25, top + panel_height - 42, top + 28}};
+  return {{first / 1.1, last * 1.1, left + 58, left + sheet.width - sheet.names},
+          {least / 1.25, most * 1.25, top + sheet.height - 42, top + 28}};
 }
 
 std::string frame(const Panel& p) {
@@ -178,39 +230,72 @@ std::string names(const Panel& p, const std::vector<Line>& lines) {
   return out;
 }
 
+/// What stands above the panels, and how high it is.
+struct Head {
+  std::string text;
+  double height;
+};
+
+Head head_of(const std::string& title, double width) {
+  Head head = {"", 20};
+  for (const std::string& line : wrapped(title, 14, width - 24)) {
+    head.text += fmt::format("<text x='12' y='{}' font-size='14'>{}</text>\n", head.height, escaped(line));
+    head.height += 18;
+  }
+  constexpr const char* says = "relMSE without the worst 0.1 % of pixels; median of the seeds, and their spread";
+  for (const std::string& line : wrapped(says, 11, width - 24)) {
+    head.text += fmt::format("<text x='12' y='{}' class='tick'>{}</text>\n", head.height, line);
+    head.height += 14;
+  }
+  return head;
+}
+
+/// A scene with its lines.
+struct Plot {
+  std::string title;
+  std::vector<Line> lines;
+};
+
+std::string drawn(const Plot& plot, const Panel& p, const char* clock) {
+  std::string out =
+      fmt::format("<text x='{:.1f}' y='{:.1f}' class='name'>{}</text>\n", p.x.from, p.y.to - 9, escaped(plot.title)) +
+      frame(p);
+  for (const Line& l : plot.lines) out += drawn(p, l);
+  return out + names(p, plot.lines) +
+         fmt::format("<text x='{:.1f}' y='{:.1f}' class='tick' text-anchor='middle'>{}</text>\n",
+                     (p.x.from + p.x.to) / 2, p.y.from + 32, clock);
+}
+
 }  // namespace
 
 std::string curves_svg(const json& results) {
   const Clock clock = clock_of(results.at("budget"));
-  std::vector<std::string> methods;
-  std::string panels;
-  size_t n = 0;
+  std::vector<std::string> methods, titles;
+  std::vector<Plot> plots;
   for (const json& scene : results.at("scenes")) {
-    const std::vector<Line> lines = lines_of(scene, clock.key, methods);
+    std::vector<Line> lines = lines_of(scene, clock.key, methods);
     if (lines.empty()) continue;
-    const Panel p = panel_of(lines, panel_width * double(n % 2), head + panel_height * double(n / 2));
-    panels += fmt::format("<text x='{:.1f}' y='{:.1f}' class='name'>{}, {}x{}</text>\n", p.x.from, p.y.to - 9,
-                          escaped(scene.at("name")), scene.at("width").get<int>(), scene.at("height").get<int>());
-    panels += frame(p);
-    for (const Line& l : lines) panels += drawn(p, l);
-    panels += names(p, lines);
-    panels += fmt::format("<text x='{:.1f}' y='{:.1f}' class='tick' text-anchor='middle'>{}</text>\n",
-                          (p.x.from + p.x.to) / 2, p.y.from + 32, clock.name);
-    ++n;
+    titles.push_back(title_of(scene));
+    plots.push_back({titles.back(), std::move(lines)});
   }
-  if (n == 0) return {};
-  const double width = panel_width * double(std::min<size_t>(n, 2)), height = head + panel_height * double((n + 1) / 2);
+  if (plots.empty()) return {};
+  const Sheet sheet = sheet_of(methods, titles);
+  const double width = sheet.width * double(std::min<size_t>(plots.size(), 2));
+  const Head head = head_of(results.value("title", ""), width);
+  const double height = head.height + sheet.height * double((plots.size() + 1) / 2);
+  std::string panels;
+  for (size_t n = 0; n < plots.size(); ++n) {
+    const double left = sheet.width * double(n % 2), top = head.height + sheet.height * double(n / 2);
+    panels += drawn(plots[n], panel_of(plots[n].lines, sheet, left, top), clock.name);
+  }
   return fmt::format(
-             "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {0} {1}' width='{0}' height='{1}' "
+             "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {0:.0f} {1:.0f}' width='{0:.0f}' height='{1:.0f}' "
              "font-family='sans-serif' font-size='12'>\n"
              "<style>polyline{{fill:none;stroke-width:2}}.grid{{stroke:#d5d9df}}.faint{{stroke:#eef0f3}}"
              ".tick{{fill:#5b6470;font-size:11px}}.name{{font-weight:bold}}</style>\n"
-             "<rect width='{0}' height='{1}' fill='white'/>\n<text x='12' y='20' font-size='14'>{2}</text>\n"
-             "<text x='12' y='38' class='tick'>relMSE without the worst 0.1 % of pixels; median of the seeds, and "
-             "their "
-             "spread</text>\n",
-             width, height, escaped(results.value("title", ""))) +
-         panels + "</svg>\n";
+             "<rect width='{0:.0f}' height='{1:.0f}' fill='white'/>\n",
+             width, height) +
+         head.text + panels + "</svg>\n";
 }
 
 }  // namespace ajar

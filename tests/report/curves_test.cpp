@@ -2,6 +2,7 @@
 
 #include "ajar/report/curves.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -78,6 +79,68 @@ TEST(Curves, EndAtTheEndOfABudgetInSamples) {
   EXPECT_NEAR(at[5], tick(svg, 1, "0.1"), 0.11) << "the error of all seeds at the end";
   EXPECT_NEAR(at[4] - at[2], (at[2] - at[0]) * std::log(5) / std::log(2), 0.2) << "8, 16, 80";
   EXPECT_NE(svg.find(">samples per pixel</text>"), std::string::npos);
+}
+
+struct Text {
+  double x, y, size;
+  std::string words;
+};
+
+/// Those that begin at the left, as all long ones do.
+std::vector<Text> texts(const std::string& svg) {
+  std::vector<Text> out;
+  const std::regex text("<text x='([0-9.]+)' y='([0-9.]+)'([^>]*)>([^<]*)</text>");
+  for (std::sregex_iterator at(svg.begin(), svg.end(), text), end; at != end; ++at) {
+    const std::string kind = (*at)[3];
+    if (kind.find("text-anchor") != kind.npos) continue;
+    const double size = kind.find("'14'") != kind.npos ? 14 : kind.find("tick") != kind.npos ? 11 : 12;
+    out.push_back({std::stod((*at)[1]), std::stod((*at)[2]), size, (*at)[4]});
+  }
+  return out;
+}
+
+double width_of(const std::string& svg) { return std::stod(svg.substr(svg.find(" width='") + 8)); }
+
+/// By letters of the usual width.
+void expect_all_inside(const std::string& svg) {
+  for (const Text& t : texts(svg)) EXPECT_LE(t.x + 0.6 * t.size * double(t.words.size()), width_of(svg)) << t.words;
+}
+
+TEST(Curves, NothingIsWiderThanThePicture) {
+  json wide = results({1});
+  EXPECT_EQ(width_of(curves_svg(wide)), 420);
+  expect_all_inside(curves_svg(wide));
+  std::string title;
+  for (int i = 0; i < 40; ++i) title += fmt::format("word {} ", i);
+  wide["title"] = title + std::string(150, 'x');
+  const std::string svg = curves_svg(wide);
+  EXPECT_EQ(width_of(svg), 420) << "long titles are wrapped";
+  expect_all_inside(svg);
+  std::string joined;
+  for (const Text& t : texts(svg))
+    if (t.size == 14) joined += t.words + (t.words[0] == 'x' ? "" : " ");
+  EXPECT_EQ(joined, title + std::string(150, 'x')) << "and whole";
+  wide["scenes"][0]["methods"][0]["name"] = std::string(100, 'm');
+  expect_all_inside(curves_svg(wide));
+  EXPECT_NE(curves_svg(wide).find(">" + std::string(100, 'm') + "</text>"), std::string::npos);
+  wide["scenes"][0]["name"] = std::string(250, 'n');
+  expect_all_inside(curves_svg(wide));
+}
+
+TEST(Curves, ManyNamesAreBelowTheHead) {
+  json many = results({1});
+  json& methods = many["scenes"][0]["methods"];
+  const json method = methods[0];
+  for (int i = 1; i < 30; ++i) methods.push_back(method), methods.back()["name"] = fmt::format("method {}", i);
+  size_t names = 0;
+  double head = 0;
+  for (const Text& t : texts(curves_svg(many))) {
+    if (t.words.starts_with("room")) head = t.y;
+    if (!t.words.starts_with("method")) continue;
+    EXPECT_GT(t.y, head) << t.words;
+    ++names;
+  }
+  EXPECT_EQ(names, 29U);
 }
 
 TEST(Curves, NamesCannotBreakOut) {
