@@ -94,14 +94,28 @@ struct Tick {
   double value;
   bool named;
 };
-// Decades, and 2 and 5 of them; the latter have names where there are few decades.
-std::vector<Tick> ticks(const Axis& axis) {
+/// Multiples of the largest 1, 2 or 5 times a power of ten that has enough there.
+std::vector<Tick> narrow_ticks(const Axis& axis, size_t fewest) {
+  for (int k = int(std::ceil(std::log10(axis.high)));; --k)
+    for (const double digit : {5.0, 2.0, 1.0}) {
+      const double step = digit * std::pow(10.0, k);
+      const int first = int(std::ceil(axis.low / step)), last = int(std::floor(axis.high / step));
+      if (last - first + 1 < int(fewest)) continue;
+      std::vector<Tick> out;
+      for (int i = first; i <= last; ++i) out.push_back({i * step, true});
+      return out;
+    }
+}
+
+/// Decades, and 2 and 5 of them; the latter have names where there are few decades. fewest: names of a narrow axis.
+std::vector<Tick> ticks(const Axis& axis, size_t fewest) {
   std::vector<Tick> out;
-  const bool few = axis.high / axis.low < 60;
+  const bool few = axis.high / axis.low < 100;
   for (int k = int(std::floor(std::log10(axis.low))); k <= int(std::ceil(std::log10(axis.high))); ++k)
     for (const double digit : {1.0, 2.0, 5.0})
       if (const double v = digit * std::pow(10.0, k); v >= axis.low && v <= axis.high)
         out.push_back({v, few || digit == 1});
+  if (few && out.size() < fewest) return narrow_ticks(axis, fewest);
   return out;
 }
 
@@ -175,14 +189,14 @@ Panel panel_of(const std::vector<Line>& lines, const Sheet& sheet, double left, 
 
 std::string frame(const Panel& p) {
   std::string out;
-  for (const Tick& t : ticks(p.x)) {
+  for (const Tick& t : ticks(p.x, 2)) {
     out += fmt::format("<path d='M{0:.1f} {1:.1f}V{2:.1f}' class='{3}'/>\n", p.x.at(t.value), p.y.from, p.y.to,
                        t.named ? "grid" : "faint");
     if (t.named)
       out += fmt::format("<text x='{:.1f}' y='{:.1f}' class='tick' text-anchor='middle'>{:g}</text>\n", p.x.at(t.value),
                          p.y.from + 16, t.value);
   }
-  for (const Tick& t : ticks(p.y)) {
+  for (const Tick& t : ticks(p.y, 3)) {
     out += fmt::format("<path d='M{0:.1f} {1:.1f}H{2:.1f}' class='{3}'/>\n", p.x.from, p.y.at(t.value), p.x.to,
                        t.named ? "grid" : "faint");
     if (t.named)

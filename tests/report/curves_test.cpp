@@ -81,6 +81,26 @@ TEST(Curves, EndAtTheEndOfABudgetInSamples) {
   EXPECT_NE(svg.find(">samples per pixel</text>"), std::string::npos);
 }
 
+size_t count(const std::string& text, const std::string& part) {
+  size_t n = 0;
+  for (size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++n;
+  return n;
+}
+
+TEST(Curves, AxesHaveTwoLabelsAtLeastHoweverNarrow) {
+  json narrow = results({1});
+  json& samples = narrow["scenes"][0]["methods"][0]["runs"][0]["samples"];
+  samples.erase(2);
+  for (const double ratio : {1.0, 1.05, 1.4, 2.0, 4.0, 9.0, 30.0, 80.0, 1000.0})
+    for (double from = 1e-3; from < 1.1e-2; from *= 1.07) {
+      for (const size_t i : {0, 1})
+        samples[i]["cpu_seconds"] = samples[1 - i]["relmse_trimmed"] = i == 0 ? from : from * ratio;
+      const std::string svg = curves_svg(narrow);
+      const size_t x = count(svg, "class='tick' text-anchor='middle'>") - 1, y = count(svg, "text-anchor='end'>");
+      EXPECT_TRUE(x >= 2 && x <= 7 && y >= 2 && y <= 7) << x << ", " << y << "\n" << svg;
+    }
+}
+
 struct Text {
   double x, y, size;
   std::string words;

@@ -1,6 +1,6 @@
 // Drives a page whose budget is in samples (drive.js).
 
-const room = one('#scene-0');
+const room = one('#scene-0'), odd = one('#scene-1');
 
 async function test_ends() {
   await until('curves are drawn', () => all('.plot .line', room).length === 4);
@@ -14,4 +14,11 @@ async function test_ends() {
   check('they follow the clock', texts('h3, h4', room).join().match(/Error against time.*Time to reach/));
 }
 
-run([test_ends]);
+async function test_narrow_axes() {
+  await until('its curve is drawn', () => one('.plot .line', odd));
+  const labels = anchor => texts(`.ticks [text-anchor=${anchor}]`, one('.plot', odd));
+  check('times have labels', labels('middle').length >= 2, labels('middle').join());
+  check('errors have labels', labels('end').length >= 2, labels('end').join());
+}
+
+run([test_ends, test_narrow_axes]);

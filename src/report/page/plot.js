@@ -14,10 +14,13 @@ function tick_text({value, digit, decade}) {
   return digit === 1 ? power_of_ten(decade) : `${digit}·${power_of_ten(decade)}`;
 }
 
-/** Which digits get a label: 1 alone where there is room for decades only. */
-function labelled_digits(low, high, pixels) {
+/** Which digits of the ticks get a label: 1 alone where there is room for decades only, but at least two ticks. */
+function labelled_digits(ticks, {low, high}, pixels) {
   const per_decade = pixels / Math.log10(high / low);
-  return per_decade > 110 ? [1, 2, 5] : per_decade > 80 ? [1, 3] : [1];
+  const digits = per_decade > 110 ? [1, 2, 5] : per_decade > 80 ? [1, 3] : [1];
+  return [digits, [1, 2, 5], [1, 2, 3, 5, 7]].find(
+             some => ticks.filter(({digit}) => some.includes(digit)).length >= 2) ??
+      [1, 2, 3, 4, 5, 6, 7, 8, 9];
 }
 
 /**
@@ -41,16 +44,17 @@ function log_frame({width, height, x, y, right = 16}) {
     'aria-label': `${y.name} against ${x.name}`
   });
   const grid = svg('g', {class: 'grid'}), texts = svg('g', {class: 'ticks'});
-  const digits_x = labelled_digits(x.low, x.high, box.right - box.left),
-        digits_y = labelled_digits(y.low, y.high, 2 * (box.bottom - box.top));
-  for (const tick of decades(x.low, x.high)) {
+  const ticks_x = decades(x.low, x.high), ticks_y = decades(y.low, y.high);
+  const digits_x = labelled_digits(ticks_x, x, box.right - box.left),
+        digits_y = labelled_digits(ticks_y, y, 2 * (box.bottom - box.top));
+  for (const tick of ticks_x) {
     const at = sx.pixel(tick.value);
     grid.append(
         svg('line', {x1: at, x2: at, y1: box.top, y2: box.bottom, class: tick.digit === 1 ? 'major' : 'minor'}));
     if (digits_x.includes(tick.digit))
       texts.append(svg('text', {x: at, y: box.bottom + 17, 'text-anchor': 'middle'}, tick_text(tick)));
   }
-  for (const tick of decades(y.low, y.high)) {
+  for (const tick of ticks_y) {
     const at = sy.pixel(tick.value);
     grid.append(
         svg('line', {x1: box.left, x2: box.right, y1: at, y2: at, class: tick.digit === 1 ? 'major' : 'minor'}));
