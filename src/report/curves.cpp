@@ -18,6 +18,17 @@ using nlohmann::json;
 // Those of the page (report.css) on white.
 constexpr const char* colours[] = {"#0072b2", "#d55e00", "#00895f", "#b0478c",
                                    "#8a6d00", "#2f9bd6", "#6a4fb3", "#4d5560"};
+// For the methods that the colours do not suffice for, as there; of the first ones none.
+constexpr const char* dashes[] = {"", "8 4", "2 3.5"};
+
+/// How the lines of a method are drawn.
+struct Look {
+  const char *colour, *dash;
+  bool is_dashed() const { return *dash; }
+};
+Look look_of(size_t method) {
+  return {colours[method % std::size(colours)], dashes[method / std::size(colours) % std::size(dashes)]};
+}
 
 struct Point {
   double time;
@@ -26,7 +37,7 @@ struct Point {
 /// What the seeds of a method have in common.
 struct Line {
   std::string name;
-  const char* colour;
+  Look look;
   bool one_seed;
   std::vector<Point> points;
 };
@@ -69,7 +80,17 @@ Clock clock_of(const json& budget) {
   return {"cpu_seconds", "CPU seconds"};
 }
 
-std::vector<Line> lines_of(const json& scene, const char* clock, std::vector<std::string>& names) {
+/// Of all methods, in the order in which the page gives them colours.
+std::vector<std::string> method_names(const json& results) {
+  std::vector<std::string> names;
+  for (const json& scene : results.at("scenes"))
+    for (const json& method : scene.value("methods", json::array()))
+      if (const std::string name = method.at("name"); std::find(names.begin(), names.end(), name) == names.end())
+        names.push_back(name);
+  return names;
+}
+
+std::vector<Line> lines_of(const json& scene, const char* clock, const std::vector<std::string>& names) {
   std::vector<Line> lines;
   for (const json& method : scene.value("methods", json::array())) {
     std::vector<Curve> curves;
@@ -78,8 +99,7 @@ std::vector<Line> lines_of(const json& scene, const char* clock, std::vector<std
     if (curves.empty()) continue;
     const std::string name = method.at("name");
     const size_t at = size_t(std::find(names.begin(), names.end(), name) - names.begin());
-    if (at == names.size()) names.push_back(name);
-    lines.push_back({name, colours[at % std::size(colours)], curves.size() == 1, common(curves)});
+    lines.push_back({name, look_of(at), curves.size() == 1, common(curves)});
   }
   return lines;
 }
@@ -155,6 +175,13 @@ std::vector<std::string> wrapped(std::string text, double font_size, double widt
 /// Sizes of a panel, the same for all.
 struct Sheet {
   double width, height, names;  ///< names: room for those of methods, beside the plot
+  bool keys;                    ///< whether a piece of its line stands before each name
+};
+
+/// A scene with its lines.
+struct Plot {
+  std::string title;
+  std::vector<Line> lines;
 };
 
 std::string title_of(const json& scene) {
@@ -162,13 +189,22 @@ std::string title_of(const json& scene) {
                      scene.at("height").get<int>());
 }
 
+constexpr double key_width = 24;
+
 /// Large enough for the longest names, and for as many of them as there are.
-Sheet sheet_of(const std::vector<std::string>& methods, const std::vector<std::string>& titles) {
+Sheet sheet_of(const std::vector<Plot>& plots) {
   constexpr double left = 58, plot = 262, bold = 1.15;
-  Sheet sheet = {0, std::max(290.0, 70 + 13 * double(methods.size())), 100};
-  for (const std::string& name : methods) sheet.names = std::max(sheet.names, 15 + width_of(name, 12));
-  sheet.width = left + plot + sheet.names;
-  for (const std::string& title : titles) sheet.width = std::max(sheet.width, left + 12 + bold * width_of(title, 12));
+  Sheet sheet = {0, 290, 100, false};
+  for (const Plot& p : plots) {
+    sheet.height = std::max(sheet.height, 70 + 13 * double(p.lines.size()));
+    sheet.width = std::max(sheet.width, left + 12 + bold * width_of(p.title, 12));
+    for (const Line& l : p.lines) {
+      sheet.names = std::max(sheet.names, 15 + width_of(l.name, 12));
+      sheet.keys |= l.look.is_dashed();
+    }
+  }
+  if (sheet.keys) sheet.names += key_width;
+  sheet.width = std::max(sheet.width, left + plot + sheet.names);
   return sheet;
 }
 
@@ -210,22 +246,27 @@ std::string at(const Panel& p, const Point& point, double error) {
   return fmt::format("{:.1f},{:.1f} ", p.x.at(point.time), p.y.at(error));
 }
 
+std::string stroke(const Look& look) {
+  return fmt::format(" stroke='{}'", look.colour) +
+         (look.is_dashed() ? fmt::format(" stroke-dasharray='{}'", look.dash) : "");
+}
+
 std::string drawn(const Panel& p, const Line& line) {
   std::string median, band;
   for (const Point& point : line.points)
     median += at(p, point, point.error.median), band += at(p, point, point.error.high);
   for (auto point = line.points.rbegin(); point != line.points.rend(); ++point) band += at(p, *point, point->error.low);
   std::string out;
-  if (!line.one_seed) out += fmt::format("<polygon points='{}' fill='{}' opacity='0.15'/>\n", band, line.colour);
-  out += fmt::format("<polyline points='{}' stroke='{}'/>\n", median, line.colour);
+  if (!line.one_seed) out += fmt::format("<polygon points='{}' fill='{}' opacity='0.15'/>\n", band, line.look.colour);
+  out += fmt::format("<polyline points='{}'{}/>\n", median, stroke(line.look));
   const Point& last = line.points.back();
   return out + fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='2.5' fill='{}'><title>{}: {:.3g}</title></circle>\n",
-                           p.x.at(last.time), p.y.at(last.error.median), line.colour, escaped(line.name),
+                           p.x.at(last.time), p.y.at(last.error.median), line.look.colour, escaped(line.name),
                            last.error.median);
 }
 
 // At the right ends of the lines, pushed apart where they meet.
-std::string names(const Panel& p, const std::vector<Line>& lines) {
+std::string names(const Panel& p, const std::vector<Line>& lines, bool keys) {
   constexpr double apart = 13;
   struct End {
     const Line* line;
@@ -238,9 +279,13 @@ std::string names(const Panel& p, const std::vector<Line>& lines) {
   double most = p.y.from;
   for (auto e = ends.rbegin(); e != ends.rend(); ++e, most -= apart) e->y = std::min(e->y, most);
   std::string out;
-  for (const End& e : ends)
-    out += fmt::format("<text x='{:.1f}' y='{:.1f}' fill='{}'>{}</text>\n", p.x.to + 7, e.y + 4, e.line->colour,
-                       escaped(e.line->name));
+  for (const End& e : ends) {
+    if (keys)
+      out += fmt::format("<polyline points='{:.1f},{:.1f} {:.1f},{:.1f}'{}/>\n", p.x.to + 7, e.y,
+                         p.x.to + 2 + key_width, e.y, stroke(e.line->look));
+    out += fmt::format("<text x='{:.1f}' y='{:.1f}' fill='{}'>{}</text>\n", p.x.to + 7 + (keys ? key_width : 0),
+                       e.y + 4, e.line->look.colour, escaped(e.line->name));
+  }
   return out;
 }
 
@@ -264,18 +309,12 @@ Head head_of(const std::string& title, double width) {
   return head;
 }
 
-/// A scene with its lines.
-struct Plot {
-  std::string title;
-  std::vector<Line> lines;
-};
-
-std::string drawn(const Plot& plot, const Panel& p, const char* clock) {
+std::string drawn(const Plot& plot, const Panel& p, const Sheet& sheet, const char* clock) {
   std::string out =
       fmt::format("<text x='{:.1f}' y='{:.1f}' class='name'>{}</text>\n", p.x.from, p.y.to - 9, escaped(plot.title)) +
       frame(p);
   for (const Line& l : plot.lines) out += drawn(p, l);
-  return out + names(p, plot.lines) +
+  return out + names(p, plot.lines, sheet.keys) +
          fmt::format("<text x='{:.1f}' y='{:.1f}' class='tick' text-anchor='middle'>{}</text>\n",
                      (p.x.from + p.x.to) / 2, p.y.from + 32, clock);
 }
@@ -284,23 +323,20 @@ std::string drawn(const Plot& plot, const Panel& p, const char* clock) {
 
 std::string curves_svg(const json& results) {
   const Clock clock = clock_of(results.at("budget"));
-  std::vector<std::string> methods, titles;
+  const std::vector<std::string> methods = method_names(results);
   std::vector<Plot> plots;
-  for (const json& scene : results.at("scenes")) {
-    std::vector<Line> lines = lines_of(scene, clock.key, methods);
-    if (lines.empty()) continue;
-    titles.push_back(title_of(scene));
-    plots.push_back({titles.back(), std::move(lines)});
-  }
+  for (const json& scene : results.at("scenes"))
+    if (std::vector<Line> lines = lines_of(scene, clock.key, methods); !lines.empty())
+      plots.push_back({title_of(scene), std::move(lines)});
   if (plots.empty()) return {};
-  const Sheet sheet = sheet_of(methods, titles);
+  const Sheet sheet = sheet_of(plots);
   const double width = sheet.width * double(std::min<size_t>(plots.size(), 2));
   const Head head = head_of(results.value("title", ""), width);
   const double height = head.height + sheet.height * double((plots.size() + 1) / 2);
   std::string panels;
   for (size_t n = 0; n < plots.size(); ++n) {
     const double left = sheet.width * double(n % 2), top = head.height + sheet.height * double(n / 2);
-    panels += drawn(plots[n], panel_of(plots[n].lines, sheet, left, top), clock.name);
+    panels += drawn(plots[n], panel_of(plots[n].lines, sheet, left, top), sheet, clock.name);
   }
   return fmt::format(
              "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {0:.0f} {1:.0f}' width='{0:.0f}' height='{1:.0f}' "

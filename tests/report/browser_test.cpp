@@ -151,6 +151,19 @@ TEST_P(Browser, SamplesAsBudget) {
   drive(results, {}, "samplestest.js", folder, GetParam(), 7);
 }
 
+/// More than there are colours and digits.
+TEST_P(Browser, TenMethods) {
+  const std::filesystem::path folder = empty_folder(fmt::format("ten-{}", GetParam()));
+  json results = test::make_synthetic(folder);
+  json& methods = results["scenes"][0]["methods"];
+  for (size_t i = 4; i < 10; ++i) {
+    methods.push_back(methods[i % 4]);
+    methods.back()["name"] = fmt::format("method {}", i + 1);
+    for (const char* list : {"techniques", "fields"}) methods.back()[list] = json::array();
+  }
+  drive(results, {}, "tentest.js", folder, GetParam(), 10);
+}
+
 INSTANTIATE_TEST_SUITE_P(Windows, Browser, testing::Values("1280,900", "420,800"), [](const auto& window) {
   return std::string(window.param).starts_with("4") ? "Phone" : "Desk";
 });

@@ -147,6 +147,33 @@ TEST(Curves, NothingIsWiderThanThePicture) {
   expect_all_inside(curves_svg(wide));
 }
 
+TEST(Curves, NinthMethodIsDashed) {
+  json many = results({1});
+  json& methods = many["scenes"][0]["methods"];
+  const json method = methods[0];
+  methods[0]["runs"] = json::array();  // has no line, and its colour all the same
+  const auto styles = [&] {
+    std::vector<std::string> out;
+    const std::string svg = curves_svg(many);
+    const std::regex line("<polyline points='[^']*'([^>]*)/>");
+    for (std::sregex_iterator at(svg.begin(), svg.end(), line), end; at != end; ++at) out.push_back((*at)[1]);
+    return out;
+  };
+  for (int i = 1; i < 8; ++i) {
+    methods.push_back(method);
+    methods.back()["name"] = fmt::format("method {}", i);
+  }
+  EXPECT_EQ(styles().size(), 7U) << "no lines before names that colours tell apart";
+  EXPECT_EQ(styles()[0], " stroke='#d55e00'") << "the second of the page's colours";
+  methods.push_back(method);
+  methods.back()["name"] = "method 8";
+  const std::vector<std::string> with_dashes = styles();
+  ASSERT_EQ(with_dashes.size(), 16U) << "a piece of its line before each name";
+  EXPECT_EQ(with_dashes[7], " stroke='#0072b2' stroke-dasharray='8 4'");
+  EXPECT_EQ(std::count(with_dashes.begin(), with_dashes.end(), with_dashes[7]), 2);
+  expect_all_inside(curves_svg(many));
+}
+
 TEST(Curves, ManyNamesAreBelowTheHead) {
   json many = results({1});
   json& methods = many["scenes"][0]["methods"];

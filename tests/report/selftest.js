@@ -137,7 +137,7 @@ async function test_comparer() {
   canvas('path').dispatchEvent(new PointerEvent('pointerleave'));
   await frames(2);
   same('dragging one pane moves all', shown_at(canvas('reference'), u + 16 / width, v), p.reference);
-  key(box, '0');
+  key(box, 'a');
   await frames(2);
   same('fit', one('.place', box).textContent, 'zoom 1.0×');
 

@@ -24,10 +24,15 @@ function svg(tag, attributes, ...content) {
   return furnish(document.createElementNS('http://www.w3.org/2000/svg', tag), attributes, content);
 }
 
-/** The class that gives a method its colour, the same in every scene. */
-function colour_of(name) { return `m${method_names.indexOf(name) % 8}`; }
+/** The classes that give a method its colour and, where these do not suffice, dashes, the same in every scene. */
+function look_of(name) {
+  const i = method_names.indexOf(name), colour = `m${i % 8}`;
+  return is_dashed(name) ? `${colour} d${Math.floor(i / 8) % 3}` : colour;
+}
 
-function swatch(name) { return el('i', {class: `swatch ${colour_of(name)}`}); }
+const is_dashed = name => Math.floor(method_names.indexOf(name) / 8) % 3 > 0;
+
+function swatch(name) { return el('i', {class: `swatch ${look_of(name)}`}); }
 
 /**
  * Calls draw(width) soon and whenever the element's width changes; in the next frame, as drawing may change the

@@ -10,6 +10,12 @@ function entries_of(scene) {
   return reference && files[reference] ? [...own, {name: 'reference', file: reference, reference: true}] : own;
 }
 
+/** The key that shows an image, or nothing: there are no more. */
+function key_of(entry, i) {
+  if (entry.reference) return el('kbd', {}, 'R');
+  return i < 10 ? el('kbd', {}, (i + 1) % 10) : null;
+}
+
 function figure_of(entry, i, state) {
   const canvas = el('canvas', {'aria-label': `Image of ${entry.name}`}), value = el('span', {class: 'pixel'}),
         figure_text = el('span', {class: 'range'});
@@ -18,8 +24,8 @@ function figure_of(entry, i, state) {
   const figure =
       el('figure', {class: 'pane', 'data-name': entry.name, style: `max-width: ${(80 * aspect).toFixed(2)}vh`}, canvas,
          el('figcaption', {},
-            el('span', {class: 'pane-name'}, el('kbd', {}, i + 1), entry.reference ? null : swatch(entry.name),
-               entry.name, figure_text),
+            el('span', {class: 'pane-name'}, key_of(entry, i), entry.reference ? null : swatch(entry.name), entry.name,
+               figure_text),
             value));
   return Object.assign(entry, {canvas, value, figure, figure_text, picture: el('canvas'), painted: ''});
 }
@@ -132,14 +138,15 @@ function press(state, key) {
     '+': () => state.view.zoom_by(1.5),
     '=': () => state.view.zoom_by(1.5),
     '-': () => state.view.zoom_by(1 / 1.5),
-    0: () => state.view.fit(),
+    a: () => state.view.fit(),
+    r: () => show_entry(state, state.entries.findIndex(entry => entry.reference)),
     ArrowLeft: () => state.view.pan(-step, 0),
     ArrowRight: () => state.view.pan(step, 0),
     ArrowUp: () => state.view.pan(0, -step),
     ArrowDown: () => state.view.pan(0, step),
   };
-  if (/^[1-9]$/.test(key))
-    show_entry(state, Number(key) - 1);
+  if (/^[0-9]$/.test(key))
+    show_entry(state, key === '0' ? 9 : Number(key) - 1);
   else if (Object.hasOwn(actions, key))
     actions[key]();
   else
@@ -204,7 +211,7 @@ function toolbar(state) {
   });
   const button = (text, title, act) => el('button', {type: 'button', title, onclick: act}, text);
   const tabs = state.entries.map((entry, i) => {
-    entry.tab = button([el('kbd', {}, i + 1), ' ', entry.name], `Show ${entry.name} alone`, () => show_entry(state, i));
+    entry.tab = button([key_of(entry, i), ' ', entry.name], `Show ${entry.name} alone`, () => show_entry(state, i));
     return entry.tab;
   });
   state.expose(0);
@@ -226,8 +233,9 @@ function columns_of(count, width) {
 }
 
 const keys_help = [
-  ['1 … 9', 'show one image'], ['Space', 'back to the one before'], ['F', 'flip or side by side'],
-  ['D', 'images or differences'], ['E, ⇧E', 'exposure'], ['+ − 0', 'zoom, fit'], ['arrows, drag', 'move']
+  ['1 … 9, 0', 'show one image'], ['R', 'the reference'], ['Space', 'back to the one before'],
+  ['F', 'flip or side by side'], ['D', 'images or differences'], ['E, ⇧E', 'exposure'], ['+ − A', 'zoom, fit'],
+  ['arrows, drag', 'move']
 ];
 
 function fill_comparer(state, scene, box) {

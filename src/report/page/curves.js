@@ -58,15 +58,22 @@ function draw_floor(frame, floor) {
       svg('text', {class: 'guide-name', x: frame.box.left + 8, y: y - 5}, 'noise of the reference'));
 }
 
+/** For a piece of its line before each name; 0 where colours alone tell them apart. */
+const room_of_keys = curves => curves.some(({name}) => is_dashed(name)) ? 26 : 0;
+
 /** Names at the right ends of the lines, pushed apart where they meet. */
 function draw_names(frame, curves) {
   const ends = curves.map(({name, curve}) => ({name, y: frame.y(curve.at(-1).median)})).sort((a, b) => a.y - b.y);
   for (let i = 1; i < ends.length; ++i) ends[i].y = Math.max(ends[i].y, ends[i - 1].y + 14);
   for (let i = ends.length - 1, most = frame.box.bottom; i >= 0; --i, most -= 14) ends[i].y = Math.min(ends[i].y, most);
-  for (const {name, y} of ends)
+  const keys = room_of_keys(curves), x = frame.box.right + 6;
+  for (const {name, y} of ends) {
+    if (keys)
+      frame.root.append(svg('line', {class: `key-line ${look_of(name)}`, x1: x, x2: x + keys - 5, y1: y, y2: y}));
     frame.root.append(
-        svg('text', {class: `line-name ${colour_of(name)}`, x: frame.box.right + 6, y: y + 4},
+        svg('text', {class: `line-name ${look_of(name)}`, x: x + keys, y: y + 4},
             name.length > 14 ? `${name.slice(0, 13)}…` : name));
+  }
 }
 
 function draw_curves(scene, width, pick) {
@@ -78,25 +85,25 @@ function draw_curves(scene, width, pick) {
   const frame = log_frame({
     width,
     height: Math.max(300, Math.min(460, width * 0.62)),
-    right: 14 + 7.2 * longest,
+    right: 14 + 7.2 * longest + room_of_keys(curves),
     x: {low: t[0], high: t[1], name: clock.unit ? `${clock.name} (${clock.unit})` : clock.name},
     y: {low: e[0], high: e[1], name: metric}
   });
   draw_guides(frame);
   draw_floor(frame, floor);
   for (const {name, seeds, curve} of curves) {
-    if (seeds.length > 1) frame.layer.append(svg('path', {class: `band ${colour_of(name)}`, d: band(frame, curve)}));
+    if (seeds.length > 1) frame.layer.append(svg('path', {class: `band ${look_of(name)}`, d: band(frame, curve)}));
     if (shown.seeds && seeds.length > 1)
       for (const {points} of seeds)
         frame.layer.append(
-            svg('path', {class: `seed ${colour_of(name)}`, d: path_of(points.map(p => [frame.x(p.t), frame.y(p.e)]))}));
+            svg('path', {class: `seed ${look_of(name)}`, d: path_of(points.map(p => [frame.x(p.t), frame.y(p.e)]))}));
   }
   for (const {name, curve} of curves) {
     frame.layer.append(
-        svg('path', {class: `line ${colour_of(name)}`, d: path_of(curve.map(p => [frame.x(p.t), frame.y(p.median)]))}));
+        svg('path', {class: `line ${look_of(name)}`, d: path_of(curve.map(p => [frame.x(p.t), frame.y(p.median)]))}));
     if (curve.length === 1)
-      frame.layer.append(svg(
-          'circle', {class: `dot ${colour_of(name)}`, cx: frame.x(curve[0].t), cy: frame.y(curve[0].median), r: 4}));
+      frame.layer.append(
+          svg('circle', {class: `dot ${look_of(name)}`, cx: frame.x(curve[0].t), cy: frame.y(curve[0].median), r: 4}));
   }
   draw_names(frame, curves);
   const aim = svg('line', {class: 'aim', x1: frame.box.left, x2: frame.box.right});
@@ -111,7 +118,7 @@ function draw_curves(scene, width, pick) {
 
 function follow_pointer(frame, curves, pick) {
   const rule = svg('line', {class: 'rule', y1: frame.box.top, y2: frame.box.bottom, visibility: 'hidden'});
-  const dots = curves.map(({name}) => svg('circle', {class: `dot ${colour_of(name)}`, r: 3.5, visibility: 'hidden'}));
+  const dots = curves.map(({name}) => svg('circle', {class: `dot ${look_of(name)}`, r: 3.5, visibility: 'hidden'}));
   frame.layer.append(rule, ...dots);
   const hide = () => {
     for (const part of [rule, ...dots]) part.setAttribute('visibility', 'hidden');

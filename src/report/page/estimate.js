@@ -42,7 +42,7 @@ function draw_scatter(points, width) {
           '÷ 2'));
   for (const point of points)
     frame.layer.append(svg('circle', {
-      class: `spot ${colour_of(point.method)}`,
+      class: `spot ${look_of(point.method)}`,
       cx: frame.x(point.relmse),
       cy: frame.y(point.estimated_relmse),
       r: 2.6

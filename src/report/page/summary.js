@@ -118,7 +118,7 @@ function scene_rows(scene, reach) {
     const cells = [
       [swatch(method.name), method.name], with_range(number(relmse.median), relmse, number),
       base ? '1' : ratio_cell(relmse.error_ratio),
-      base ? forest(null, reach) : forest(relmse.error_ratio, reach, colour_of(method.name)),
+      base ? forest(null, reach) : forest(relmse.error_ratio, reach, look_of(method.name)),
       base ? '1' : ratio_cell(relmse.time_ratio),
       slope ? with_range(slope_text(slope.value), slope, slope_text) : nothing, verdict_chip(method.verdict)
     ];
@@ -167,7 +167,7 @@ function total_rows(reach) {
                                       []),
                               ...[[swatch(name), name], `${n} scene${n === 1 ? '' : 's'}`,
                                   mean_of(error, n),
-                                  error ? forest({value: error.mean}, reach, colour_of(name)) : '',
+                                  error ? forest({value: error.mean}, reach, look_of(name)) : '',
                                   mean_of(time, n),
                                   slope_text(slope), `${wins} ▲  ${ties} ≈  ${losses} ▼`]
                                   .map(cell => el('td', {}, cell))
