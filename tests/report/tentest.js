@@ -30,4 +30,13 @@ async function test_keys() {
   check('nothing is wider than the window', document.scrollingElement.scrollWidth <= innerWidth);
 }
 
-run([test_looks, test_keys]);
+function test_words() {
+  const head = one('#head').textContent, facts = one('.scene-facts', room).textContent;
+  check('one thread', head.includes('· 1 thread ·'), head);
+  check('edges and triangles', facts.includes('at most 1 edge ·') && facts.includes('12 345 triangles'), facts);
+  const notes = texts('.note', room).join();
+  check('whose memory', notes.includes('the whole process'), notes);
+  check('whose images', notes.includes('those of the first seed'), notes);
+}
+
+run([test_looks, test_keys, test_words]);

@@ -156,5 +156,7 @@ function write_bars(scene, parent) {
   }));
   parent.append(
       el('h3', {}, 'Cost'), grid, ...(rows ? [rows] : []),
-      el('p', {class: 'note'}, 'Means over the seeds; rejected values are a sum, and anything but 0 is a fault.'));
+      el('p', {class: 'note'},
+         'Means over the seeds; rejected values are a sum, and anything but 0 is a fault. The memory peak is the whole ' +
+             'process\'s so far, with all methods and the scenes before, not this method\'s.'));
 }

@@ -239,11 +239,14 @@ const keys_help = [
 ];
 
 function fill_comparer(state, scene, box) {
+  const some_seeds = results.seeds?.length > 1 ?
+      'Images, and the relMSE below them, are those of the first seed; tables have medians over the seeds.' :
+      null;
   box.replaceChildren(
       ...toolbar(state), state.panes,
       el('p', {class: 'note keys'}, 'Click an image to wake the keys and the wheel: ',
          keys_help.map(([key, what], i) => [el('kbd', {}, key), ` ${what}${i + 1 < keys_help.length ? ',  ' : '.  '}`]),
-         'Images are tonemapped as Ajar\'s PNGs: exposure, clip, sRGB.'));
+         'Images are tonemapped as Ajar\'s PNGs: exposure, clip, sRGB.', some_seeds ? [' ', some_seeds] : null));
   box.addEventListener('keydown', event => {
     if (event.ctrlKey || event.altKey || event.metaKey) return;
     if (event.target.matches('input') && event.key.startsWith('Arrow')) return;

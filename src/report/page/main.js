@@ -22,12 +22,12 @@ function facts_of(scene) {
   return [
     scene.file, defines, is_number(scene.width) ? `${scene.width} × ${scene.height}` : null,
     is_number(scene.max_depth) ?
-        (scene.max_depth < 0 ? 'paths of any length' : `paths of at most ${scene.max_depth} edges`) :
+        (scene.max_depth < 0 ? 'paths of any length' : `paths of at most ${counted(scene.max_depth, 'edge')}`) :
                                null,
-    scene.triangles > 0 ? `${grouped(scene.triangles)} triangles` : null,
+    scene.triangles > 0 ? counted(scene.triangles, 'triangle') : null,
     is_number(scene.load_seconds) ?
-                               `loaded in ${seconds(scene.load_seconds)}, built in ${seconds(scene.build_seconds)}` :
-                               null,
+        `loaded in ${seconds(scene.load_seconds)}, built in ${seconds(scene.build_seconds)}` :
+        null,
     is_number(reference?.relmse) ? `noise of the reference: relMSE ${number(reference.relmse)}` : null
   ].filter(Boolean)
       .join(' · ');

@@ -9,6 +9,9 @@ function power_of_ten(exponent) {
 
 function grouped(x) { return Math.round(x).toString().replace(/\B(?=(\d{3})+$)/g, ' ').replace('-', '−'); }
 
+/** "1 scene", "2 scenes", "12 345 scenes". */
+function counted(n, what) { return `${grouped(n)} ${what}${n === 1 ? '' : 's'}`; }
+
 /** Three digits that count: 0.0123, 1.23, 12 300, 1.23·10⁻⁵. */
 function number(x, digits = 3) {
   if (!is_number(x)) return nothing;

@@ -19,7 +19,7 @@ function budget_text() {
   return [
     is_number(cpu_seconds) ? `${whole_seconds(cpu_seconds)} of CPU time` : null,
     is_number(wall) ? `${whole_seconds(wall)} of wall time` : null,
-    is_number(spp) ? `${grouped(spp)} samples per pixel` : null
+    is_number(spp) ? `${counted(spp, 'sample')} per pixel` : null
   ].filter(Boolean)
              .join(', ') ||
       nothing;
@@ -38,7 +38,7 @@ function write_head() {
     [
       'Machine',
       [
-        machine.cpu, is_number(machine.threads) ? `${machine.threads} threads` : null,
+        machine.cpu, is_number(machine.threads) ? counted(machine.threads, 'thread') : null,
         machine.memory_bytes > 0 ? bytes(machine.memory_bytes) : null, machine.system, machine.compiler
       ].filter(Boolean)
               .join(' · ') ||
@@ -165,7 +165,7 @@ function total_rows(reach) {
                               ...(i === 0 ?
                                       [el('td', {class: 'scene', rowspan: all.length}, 'all scenes, geometric means')] :
                                       []),
-                              ...[[swatch(name), name], `${n} scene${n === 1 ? '' : 's'}`,
+                              ...[[swatch(name), name], counted(n, 'scene'),
                                   mean_of(error, n),
                                   error ? forest({value: error.mean}, reach, look_of(name)) : '',
                                   mean_of(time, n),
@@ -184,7 +184,7 @@ function headline({name, error, time, wins, ties, losses}) {
   const times = time ? `, ${ratio(time.mean >= 1 ? time.mean : 1 / time.mean)} ${
                            time.mean >= 1 ? 'less' : 'more'} time to the same error` :
                        '';
-  const means = error ? ` (geometric means over ${n} scene${n === 1 ? '' : 's'})` : '';
+  const means = error ? ` (geometric means over ${counted(n, 'scene')})` : '';
   return el(
       'li', {}, swatch(name), el('b', {}, name),
       `: ${figures}${times}${means}; ${wins} won, ${ties} tied, ${losses} lost.`);
