@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <fstream>
 
 #include "agreement.h"
 #include "ajar/core/error.h"
@@ -203,6 +204,18 @@ Picture read_reference(const fs::path& path, const Camera& camera) {
   return image;
 }
 
+/// The noise that an image has by the record beside it, of `ajar render` or of a reference made before; nothing where
+/// there is none. Beside images of others may lie what it will.
+std::optional<double> recorded_relmse(fs::path image) {
+  std::ifstream in(image.replace_extension(".json"), std::ios::binary);
+  const Json record = Json::parse(in, nullptr, false);
+  if (!record.is_object()) return {};
+  for (const char* key : {"relmse", "estimated_relmse"})
+    if (const auto found = record.find(key); found != record.end() && found->is_number() && found->get<double>() >= 0)
+      return found->get<double>();
+  return {};
+}
+
 }  // namespace
 
 std::string hash_of(std::string_view bytes) {
@@ -243,7 +256,9 @@ std::optional<Reference> find_reference(const Suite& suite, const BenchScene& sc
                                         const BenchOptions& options) {
   const Camera& camera = loaded.camera;
   if (!scene.reference.empty())
-    return Reference{read_reference(scene.reference, camera), {}, {{"image", scene.reference.filename().string()}}};
+    return Reference{read_reference(scene.reference, camera),
+                     recorded_relmse(scene.reference),
+                     {{"image", scene.reference.filename().string()}}};
   const fs::path stem = reference_stem(scene.name, loaded, options.references);
   const fs::path image = stem.string() + ".exr", json = stem.string() + ".json";
   if (!is_there(image.string()) || !is_there(json.string())) return {};

@@ -104,9 +104,12 @@ std::string shown(const Json& s, const char* key, const char* absent = "-") {
   return fmt::format("{:.3g} [{}, {}]", s[key].get<double>(), end(s["low"]), end(s["high"]));
 }
 
-/// A line for a scene whose reference is too noisy for what is measured against it; else nothing.
+/// A line for a scene whose reference is too noisy for what is measured against it, or may be; else nothing.
 std::string warning(const Json& scene) {
-  if (scene["reference"].is_null() || scene["reference"]["relmse"].is_null()) return {};
+  if (scene["reference"].is_null()) return {};
+  if (scene["reference"]["relmse"].is_null())
+    return fmt::format("{}: the noise of the reference is unknown; no record of a render beside its image tells it\n",
+                       scene["name"].get<std::string>());
   double least = infinity;
   for (const Json& method : scene["methods"])
     if (const Json& relmse = method["summary"]["relmse"]; !relmse.is_null())

@@ -442,6 +442,26 @@ TEST_F(Bench, TableWarnsOfANoisyReference) {
   EXPECT_EQ(results_table(results).find("the reference's own"), std::string::npos);
   relmse = nullptr;
   EXPECT_EQ(results_table(results).find("the reference's own"), std::string::npos);
+  EXPECT_NE(results_table(results).find("s: the noise of the reference is unknown"), std::string::npos);
+}
+
+TEST_F(Bench, TheRecordBesideAReferenceTellsItsNoise) {
+  Json json = small();
+  run(json);
+  const fs::path stem = options.references / "s-16x12-depth3";
+  fs::copy(stem.string() + ".exr", folder / "right.exr");
+  json["scenes"][0]["reference"] = {{"image", "right.exr"}};
+  options.folder = folder / "other";
+  const auto noise = [&] { return run(json)["scenes"][0]["reference"]["relmse"]; };
+  EXPECT_TRUE(noise().is_null());
+  std::ofstream(folder / "right.json") << R"({"image": "right.exr", "estimated_relmse": 0.0125})";
+  EXPECT_EQ(noise(), 0.0125);
+  for (const char* other : {"no JSON", "[]", R"({"estimated_relmse": "small"})", R"({"relmse": -1})"}) {
+    std::ofstream(folder / "right.json") << other;
+    EXPECT_TRUE(noise().is_null()) << other;
+  }
+  fs::copy(stem.string() + ".json", folder / "right.json", fs::copy_options::overwrite_existing);
+  EXPECT_EQ(noise(), Json::parse(kit::bytes_of(stem.string() + ".json"))["relmse"]);
 }
 
 TEST_F(Bench, TimeBudgetsAreKept) {

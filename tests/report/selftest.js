@@ -204,6 +204,9 @@ async function test_rest() {
   const total = all('.summary tfoot tr').find(row => row.textContent.includes('guided-bdpt'));
   check('geometric mean', total.textContent.includes(`${expected.guided_ratio}×`), total.textContent);
   same('bars', all('.bars', room).length, 5);
+  check('what true means', one('#estimates .note').textContent.includes('the reference\'s own noise'));
+  check('noise of the reference', one('.scene-facts', room).textContent.includes('relMSE 0.00210'));
+  check('of none there is nothing to say', !one('.scene-facts', odd).textContent.includes('noise'));
   same('estimates', all('#estimates .spot').length, expected.estimates);
   near('their ratio', number_in(one('.estimates tbody tr').cells[2].textContent), 0.95, 0.08);
   one('.theme').click();

@@ -34,6 +34,7 @@ function test_words() {
   const head = one('#head').textContent, facts = one('.scene-facts', room).textContent;
   check('one thread', head.includes('· 1 thread ·'), head);
   check('edges and triangles', facts.includes('at most 1 edge ·') && facts.includes('12 345 triangles'), facts);
+  check('noise that is not known', facts.includes('noise of the reference unknown'), facts);
   const notes = texts('.note', room).join();
   check('whose memory', notes.includes('the whole process'), notes);
   check('whose images', notes.includes('those of the first seed'), notes);

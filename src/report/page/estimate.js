@@ -102,7 +102,8 @@ function write_estimates(main) {
       el('label', {class: 'slider'}, el('span', {class: 'label'}, 'Scene'), choice), figures,
       el('p', {class: 'note'},
          'Every sample of every seed. Estimated / true is a geometric mean, the spread one geometric standard deviation. ' +
-             'The estimate comes from the image alone; above the diagonal it is too careful, below too bold.'));
+             'The estimate comes from the image alone; above the diagonal it is too careful, below too bold. What is called ' +
+             'true holds the reference\'s own noise, too, which draws the ratio down where it is large.'));
   main.append(
       el('section', {id: 'estimates'}, el('h2', {}, 'Estimated against true error'),
          el('div', {class: 'curves even'}, box, side)));

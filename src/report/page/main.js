@@ -28,7 +28,9 @@ function facts_of(scene) {
     is_number(scene.load_seconds) ?
         `loaded in ${seconds(scene.load_seconds)}, built in ${seconds(scene.build_seconds)}` :
         null,
-    is_number(reference?.relmse) ? `noise of the reference: relMSE ${number(reference.relmse)}` : null
+    is_number(reference?.relmse) ? `noise of the reference: relMSE ${number(reference.relmse)}` :
+        reference?.image ? 'noise of the reference unknown' :
+                           null
   ].filter(Boolean)
       .join(' · ');
 }
