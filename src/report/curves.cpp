@@ -22,11 +22,11 @@ constexpr const char* colours[] = {"#0072b2", "#d55e00", "#00895f", "#b0478c",
 constexpr const char* dashes[] = {"", "8 4", "2 3.5"};
 
 /// How the lines of a method are drawn.
-struct Look {
+struct Stroke {
   const char *colour, *dash;
   bool is_dashed() const { return *dash; }
 };
-Look look_of(size_t method) {
+Stroke stroke_of(size_t method) {
   return {colours[method % std::size(colours)], dashes[method / std::size(colours) % std::size(dashes)]};
 }
 
@@ -37,7 +37,7 @@ struct Point {
 /// What the seeds of a method have in common.
 struct Line {
   std::string name;
-  Look look;
+  Stroke stroke;
   bool one_seed;
   std::vector<Point> points;
 };
@@ -99,7 +99,7 @@ std::vector<Line> lines_of(const json& scene, const char* clock, const std::vect
     if (curves.empty()) continue;
     const std::string name = method.at("name");
     const size_t at = size_t(std::find(names.begin(), names.end(), name) - names.begin());
-    lines.push_back({name, look_of(at), curves.size() == 1, common(curves)});
+    lines.push_back({name, stroke_of(at), curves.size() == 1, common(curves)});
   }
   return lines;
 }
@@ -200,7 +200,7 @@ Sheet sheet_of(const std::vector<Plot>& plots) {
     sheet.width = std::max(sheet.width, left + 12 + bold * width_of(p.title, 12));
     for (const Line& l : p.lines) {
       sheet.names = std::max(sheet.names, 15 + width_of(l.name, 12));
-      sheet.keys |= l.look.is_dashed();
+      sheet.keys |= l.stroke.is_dashed();
     }
   }
   if (sheet.keys) sheet.names += key_width;
@@ -246,9 +246,8 @@ std::string at(const Panel& p, const Point& point, double error) {
   return fmt::format("{:.1f},{:.1f} ", p.x.at(point.time), p.y.at(error));
 }
 
-std::string stroke(const Look& look) {
-  return fmt::format(" stroke='{}'", look.colour) +
-         (look.is_dashed() ? fmt::format(" stroke-dasharray='{}'", look.dash) : "");
+std::string drawn(const Stroke& s) {
+  return fmt::format(" stroke='{}'", s.colour) + (s.is_dashed() ? fmt::format(" stroke-dasharray='{}'", s.dash) : "");
 }
 
 std::string drawn(const Panel& p, const Line& line) {
@@ -257,11 +256,11 @@ std::string drawn(const Panel& p, const Line& line) {
     median += at(p, point, point.error.median), band += at(p, point, point.error.high);
   for (auto point = line.points.rbegin(); point != line.points.rend(); ++point) band += at(p, *point, point->error.low);
   std::string out;
-  if (!line.one_seed) out += fmt::format("<polygon points='{}' fill='{}' opacity='0.15'/>\n", band, line.look.colour);
-  out += fmt::format("<polyline points='{}'{}/>\n", median, stroke(line.look));
+  if (!line.one_seed) out += fmt::format("<polygon points='{}' fill='{}' opacity='0.15'/>\n", band, line.stroke.colour);
+  out += fmt::format("<polyline points='{}'{}/>\n", median, drawn(line.stroke));
   const Point& last = line.points.back();
   return out + fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='2.5' fill='{}'><title>{}: {:.3g}</title></circle>\n",
-                           p.x.at(last.time), p.y.at(last.error.median), line.look.colour, escaped(line.name),
+                           p.x.at(last.time), p.y.at(last.error.median), line.stroke.colour, escaped(line.name),
                            last.error.median);
 }
 
@@ -282,9 +281,9 @@ std::string names(const Panel& p, const std::vector<Line>& lines, bool keys) {
   for (const End& e : ends) {
     if (keys)
       out += fmt::format("<polyline points='{:.1f},{:.1f} {:.1f},{:.1f}'{}/>\n", p.x.to + 7, e.y,
-                         p.x.to + 2 + key_width, e.y, stroke(e.line->look));
+                         p.x.to + 2 + key_width, e.y, drawn(e.line->stroke));
     out += fmt::format("<text x='{:.1f}' y='{:.1f}' fill='{}'>{}</text>\n", p.x.to + 7 + (keys ? key_width : 0),
-                       e.y + 4, e.line->look.colour, escaped(e.line->name));
+                       e.y + 4, e.line->stroke.colour, escaped(e.line->name));
   }
   return out;
 }
