@@ -250,9 +250,9 @@ int show_lessons(const Arguments& a) {
 }
 
 // Throws Error for what is no group, case or integrator.
-void require_known(const Arguments& a) {
+void require_known(const Arguments& a, const std::vector<Case>& all) {
   std::vector<std::string> groups, names;
-  for (const Case& c : cases()) {
+  for (const Case& c : all) {
     if (groups.empty() || groups.back() != c.group) groups.push_back(c.group);
     if (is_in(c.group, a.groups)) names.push_back(c.name);
   }
@@ -265,15 +265,16 @@ void require_known(const Arguments& a) {
   require("group", a.groups, groups);
   require("case", a.names, names);
   require("integrator", a.integrators, integrator_names());
-  if (std::none_of(cases().begin(), cases().end(), [&](const Case& c) { return is_wanted(a, c); }))
+  if (std::none_of(all.begin(), all.end(), [&](const Case& c) { return is_wanted(a, c); }))
     throw Error("all of these cases are large; add --large");
 }
 
 int measure(const Arguments& a) {
-  require_known(a);
+  const std::vector<Case> all = cases();
+  require_known(a, all);
   Table table;
   std::string group;
-  for (const Case& c : cases()) {
+  for (const Case& c : all) {
     if (!is_wanted(a, c)) continue;
     if (c.group != group) begin_group(a, table, group = c.group);
     add_row(a, table, c);

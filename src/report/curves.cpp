@@ -189,22 +189,22 @@ std::string title_of(const json& scene) {
                      scene.at("height").get<int>());
 }
 
-constexpr double key_width = 24;
+constexpr double key_width = 24, plot_left = 58;
 
 /// Large enough for the longest names, and for as many of them as there are.
 Sheet sheet_of(const std::vector<Plot>& plots) {
-  constexpr double left = 58, plot = 262, bold = 1.15;
+  constexpr double plot = 262, bold = 1.15;
   Sheet sheet = {0, 290, 100, false};
   for (const Plot& p : plots) {
     sheet.height = std::max(sheet.height, 70 + 13 * double(p.lines.size()));
-    sheet.width = std::max(sheet.width, left + 12 + bold * width_of(p.title, 12));
+    sheet.width = std::max(sheet.width, plot_left + 12 + bold * width_of(p.title, 12));
     for (const Line& l : p.lines) {
       sheet.names = std::max(sheet.names, 15 + width_of(l.name, 12));
       sheet.keys |= l.stroke.is_dashed();
     }
   }
   if (sheet.keys) sheet.names += key_width;
-  sheet.width = std::max(sheet.width, left + plot + sheet.names);
+  sheet.width = std::max(sheet.width, plot_left + plot + sheet.names);
   return sheet;
 }
 
@@ -219,7 +219,7 @@ Panel panel_of(const std::vector<Line>& lines, const Sheet& sheet, double left, 
       first = std::min(first, p.time), last = std::max(last, p.time);
       least = std::min(least, p.error.low), most = std::max(most, p.error.high);
     }
-  return {{first / 1.1, last * 1.1, left + 58, left + sheet.width - sheet.names},
+  return {{first / 1.1, last * 1.1, left + plot_left, left + sheet.width - sheet.names},
           {least / 1.25, most * 1.25, top + sheet.height - 42, top + 28}};
 }
 

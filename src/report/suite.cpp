@@ -259,7 +259,7 @@ BenchScene read_scene(const fs::path& suite, const Element& e, std::set<std::str
   }
   if (const auto depth = find(e, "max_depth")) {
     scene.max_depth = int(integer(*depth, -1, deepest));
-    if (*scene.max_depth == 0) fail(*depth, "is 0; write -1 for unlimited, or 1 or more edges");
+    if (scene.max_depth == 0) fail(*depth, "is 0; write -1 for unlimited, or 1 or more edges");
   }
   read_reference(suite, get(e, "reference", "write {\"image\": FILE} or {\"made_by\": [...]}"), scene);
   return scene;

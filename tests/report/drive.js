@@ -58,6 +58,9 @@ function shown_at(canvas, x, y) {
 /** At the middle of an image pixel, while all of the image is in view. */
 const colour_at = (canvas, x, y, width, height) => shown_at(canvas, (x + 0.5) / width, (y + 0.5) / height);
 
+/** Names of the images that a comparer shows. */
+const images_seen = box => all('.pane', box).filter(pane => !pane.hidden).map(pane => pane.dataset.name);
+
 async function run(tests) {
   for (const test of tests) {
     try {

@@ -141,7 +141,7 @@ async function test_comparer() {
   await frames(2);
   same('fit', one('.place', box).textContent, 'zoom 1.0×');
 
-  const seen = () => all('.pane', box).filter(pane => !pane.hidden).map(pane => pane.dataset.name);
+  const seen = () => images_seen(box);
   same('all beside each other', seen(), ['bdpt', 'path', 'guided-bdpt', 'light', 'reference']);
   key(box, '1');
   same('key 1', seen(), ['bdpt']);

@@ -19,7 +19,7 @@ async function test_keys() {
   const box = one('.comparer', room);
   box.scrollIntoView();
   if (!await until('the images appear', () => all('canvas', box).length === 11)) return;
-  const seen = () => all('.pane', box).filter(pane => !pane.hidden).map(pane => pane.dataset.name);
+  const seen = () => images_seen(box);
   same('their keys', texts('.pane-name kbd', box), ['1', '2', '3', '4', '5', '6', '7', '8', '9', '0', 'R']);
   key(box, '9');
   same('key 9', seen(), ['method 9']);

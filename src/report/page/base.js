@@ -24,13 +24,14 @@ function svg(tag, attributes, ...content) {
   return furnish(document.createElementNS('http://www.w3.org/2000/svg', tag), attributes, content);
 }
 
-/** The classes that give a method its colour and, where these do not suffice, dashes, the same in every scene. */
-function look_of(name) {
-  const i = method_names.indexOf(name), colour = `m${i % 8}`;
-  return is_dashed(name) ? `${colour} d${Math.floor(i / 8) % 3}` : colour;
-}
+/** Which dashes the lines of a method have: 0 are none, of those that colours suffice for. */
+function dash_of(name) { return Math.floor(method_names.indexOf(name) / 8) % 3; }
 
-const is_dashed = name => Math.floor(method_names.indexOf(name) / 8) % 3 > 0;
+/** The classes that give a method its colour and dashes, the same in every scene. */
+function look_of(name) {
+  const colour = `m${method_names.indexOf(name) % 8}`, dash = dash_of(name);
+  return dash > 0 ? `${colour} d${dash}` : colour;
+}
 
 function swatch(name) { return el('i', {class: `swatch ${look_of(name)}`}); }
 

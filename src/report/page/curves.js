@@ -59,7 +59,7 @@ function draw_floor(frame, floor) {
 }
 
 /** For a piece of its line before each name; 0 where colours alone tell them apart. */
-const room_of_keys = curves => curves.some(({name}) => is_dashed(name)) ? 26 : 0;
+const room_of_keys = curves => curves.some(({name}) => dash_of(name) > 0) ? 26 : 0;
 
 /** Names at the right ends of the lines, pushed apart where they meet. */
 function draw_names(frame, curves) {
