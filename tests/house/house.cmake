@@ -10,6 +10,10 @@ set(longest 500)  # refused
 set(banned_in_code "using namespace [a-z]" "std::rand\\(" "random_device" "mt19937" "TODO" "FIXME" "XXX" "-ffast-math")
 set(banned_everywhere "[ \"'(=]/(work|tmp|home|root)/[a-z]")
 
+# The first folder or file of every path that the repository holds.
+set(top_level .ci .clang-format .gitignore CMakeLists.txt CMakePresets.json LICENSE README.md benchmarks check cmake demo docs
+    include scenes src tests)
+
 set(breaches 0)
 macro(breach what)
   math(EXPR breaches "${breaches} + 1")
@@ -119,6 +123,17 @@ foreach(file ${all})
     message(NOTICE "note: ${file} has ${lines} lines: soon to be divided")
   endif()
 endforeach()
+
+# What a program wrote where it was run is not to be committed with the rest. A tree without its history is not asked.
+if(EXISTS ${ROOT}/.git)
+  execute_process(COMMAND git -C ${ROOT} -c core.quotePath=false ls-files -z COMMAND cut -z -d/ -f1 COMMAND sort -zu
+                  COMMAND tr "\\0" ";" OUTPUT_VARIABLE held)
+  foreach(entry ${held})
+    if(NOT entry IN_LIST top_level)
+      breach("${entry}: the repository does not hold this at its top; take it out, or name it in house.cmake")
+    endif()
+  endforeach()
+endif()
 
 if(breaches GREATER 0)
   message(FATAL_ERROR "${breaches} breach(es) of the house rules in ${code_count} files")

@@ -86,8 +86,8 @@ std::string open_page(const std::string& program, const std::filesystem::path& f
 }
 
 std::filesystem::path empty_folder(const std::string& name) {
-  // Stays in the build folder, to be looked at.
-  const std::filesystem::path folder = std::filesystem::current_path() / name;
+  // Stays beside the test program in the build folder, from wherever that is run, to be looked at.
+  const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe").parent_path() / name;
   std::filesystem::remove_all(folder);
   return folder;
 }
