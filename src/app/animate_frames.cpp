@@ -92,10 +92,7 @@ void render_frame(Animation& a, int frame, const Stage& stage, const Lessons& le
   state.stats.seconds = state.stats.learn_seconds = lessons.seconds;
   state.stats.cpu_seconds = state.stats.learn_cpu_seconds = lessons.cpu_seconds;
   state.stats.counters = lessons.counters;
-  RenderOptions budget = run.options;  // the frame's time begins after loading: building counts
-  if (budget.seconds > 0) budget.seconds = std::max(budget.seconds - run.build_seconds, 1e-3);
-  if (budget.cpu_seconds > 0) budget.cpu_seconds = std::max(budget.cpu_seconds - run.build_cpu, 1e-3);
-  render(*stage.scene, *stage.accel, budget, state, [&](const RenderState& s) {
+  render(*stage.scene, *stage.accel, without_start(run.options, run), state, [&](const RenderState& s) {
     show(a, frame, samples_text(s), false);
     return !stop_asked();
   });

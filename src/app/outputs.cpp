@@ -149,10 +149,19 @@ void Log::write(const RenderState& state, bool last) {
   if (reference) j["error"] = nlohmann::ordered_json::parse(to_json(compare(develop(state.film), *reference)));
   j["phases_cpu"] = phases_json(state.stats.cpu_seconds, state.stats.learn_cpu_seconds, state.stats.ticks);
   add_account(j, state);
-  errno = 0;
-  if (file << j.dump() << std::endl) return;
+  waiting += j.dump() + "\n";
+  if (spares && !last && state.stats.seconds <= save_seconds) return;
+  begin();
+  if (file << waiting << std::flush) return waiting.clear();
   fault = fmt::format("{}: cannot be written ({}); the log ends there", path, std::strerror(errno));
   file.close();
+}
+
+void Log::begin() {
+  errno = 0;
+  if (!spares) return;
+  file.close(), file.open(path, std::ios::out);
+  spares = false;
 }
 
 Picture read_reference(const std::string& path, const Camera& camera) {
@@ -177,7 +186,9 @@ Log open_log(const RenderArguments& a, std::optional<Picture> reference) {
   if (a.log.empty()) return log;
   make_folder_of(a.log);
   const bool cut = !a.resume.empty() && is_cut(a.log);
-  log.file.open(a.log, a.resume.empty() ? std::ios::out : std::ios::app);
+  std::error_code error;
+  log.spares = a.resume.empty() && is_file(a.log) && std::filesystem::file_size(a.log, error) > 0 && !error;
+  log.file.open(a.log, a.resume.empty() && !log.spares ? std::ios::out : std::ios::app);
   if (!log.file) throw Error(fmt::format("--log {}: cannot be written ({})", a.log, std::strerror(errno)));
   if (cut) log.file << '\n';
   return log;

@@ -24,9 +24,6 @@
 namespace ajar {
 namespace {
 
-// Of a time limit: what passes that only train may take.
-constexpr double training_share = 0.5;
-
 // The image is safe by now; the record is written again.
 void hold_against(const RenderArguments& a, const Scene& scene, const Accel& accel, Run& run,
                   const RenderState& state) {
@@ -84,17 +81,18 @@ bool has_samples(const Film& film) { return film.passes > 0 || film.chunks > 0; 
 
 // Files of an earlier render that one which was stopped early does not replace: they are worth more.
 struct Spared {
-  bool image = false, checkpoint = false, fields = false;
+  bool image = false, checkpoint = false, fields = false, log = false;
 };
 
 // Of a render that does not go on from them, and was at work for so many seconds: the image where no pass is whole,
-// checkpoint and fields before the first save on the way.
-Spared spare(const RenderArguments& a, const Run& run, const RenderState& state, double seconds) {
+// checkpoint, fields and log before the first save on the way.
+Spared spare(const RenderArguments& a, const Run& run, const RenderState& state, const Log& log, double seconds) {
   if (!run.interrupted) return {};
   const bool early = seconds <= save_seconds;
   Spared out;
   out.image = state.film.passes == 0 && a.resume.empty() && is_there(a.out);
   out.checkpoint = early && is_of_another(a.checkpoint, a.resume);
+  out.log = early && log.spares;
   out.fields = early && a.resume.empty() && is_of_another(a.save_fields, a.load_fields);
   return out;
 }
@@ -104,9 +102,12 @@ std::string left_alone(const RenderArguments& a, const Spared& spared) {
   if (spared.image) names.push_back(a.out);
   if (spared.checkpoint) names.push_back(a.checkpoint);
   if (spared.fields) names.push_back(a.save_fields);
+  if (spared.log) names.push_back(a.log);
   if (names.empty()) return {};
-  return names.size() == 1 ? fmt::format("; {} is left as it was", names[0])
-                           : fmt::format("; {} are left as they were", fmt::join(names, " and "));
+  if (names.size() == 1) return fmt::format("; {} is left as it was", names[0]);
+  const std::string last = names.back();
+  names.pop_back();
+  return fmt::format("; {} and {} are left as they were", fmt::join(names, ", "), last);
 }
 
 std::string interruption(const RenderArguments& a, const Spared& spared, const Film& film) {
@@ -172,13 +173,6 @@ RenderState begin(const RenderArguments& a, Scene& scene, const Run& run) {
   return state;
 }
 
-// The user's time begins after loading: building counts.
-RenderOptions without_start(RenderOptions options, const Run& run) {
-  if (options.seconds > 0) options.seconds = std::max(options.seconds - run.build_seconds, 1e-3);
-  if (options.cpu_seconds > 0) options.cpu_seconds = std::max(options.cpu_seconds - run.build_cpu, 1e-3);
-  return options;
-}
-
 void trace(const RenderArguments& a, const Scene& scene, const Accel& accel, Run& run, RenderState& state, Log& log) {
   RenderOptions budget = run.options;
   if (!a.versus.empty()) budget.seconds *= 1 - versus_share, budget.cpu_seconds *= 1 - versus_share;
@@ -196,8 +190,9 @@ void trace(const RenderArguments& a, const Scene& scene, const Accel& accel, Run
     }
   };
   render(scene, accel, limits, state, [&](const RenderState& s) {
-    if (is_over(limits, s.stats, training_share)) end_training(state.learning);
+    Stopwatch watch;
     beside([&] { show(progress, budget, s), log.write(s, false), saver.save(s); });
+    watch.add_to(run.beside_seconds, run.beside_cpu);
     return !stop_asked();
   });
   run.interrupted = stop_asked();
@@ -216,7 +211,7 @@ void write_all(const RenderArguments& a, const Scene& scene, const Accel& accel,
     });
   writes.emplace_back([&] {  // last of what goes on from the state
     if (run.interrupted) show_merged(state);
-    log.write(state, true);
+    if (!spared.log) log.write(state, true);
   });
   const bool shows = has_samples(state.film) && !spared.image;
   if (shows) writes.emplace_back([&] { write_image(a, scene, accel, run, state); });
@@ -269,7 +264,7 @@ void run_render(RenderArguments a) {
   Log log = open_log(a, std::move(reference));
   const double before = state.stats.seconds;
   trace(a, scene, accel, run, state, log);
-  const Spared spared = spare(a, run, state, state.stats.seconds - before);
+  const Spared spared = spare(a, run, state, log, state.stats.seconds - before);
   write_all(a, scene, accel, run, state, spared, log);
   note_plain(a, run, state), note_black(a, run, state);
   warn(run, state);

@@ -64,7 +64,7 @@ LearnOptions learn_options(const RenderArguments& a, const std::string& integrat
 void check_next_event(const RenderOptions& o, const Scene& scene) {
   if (o.next_event) return;
   if (o.integrator != "path" && o.integrator != "guided-path")
-    throw Error(fmt::format("--no-next-event: {} needs it; take path or guided-path", o.integrator));
+    throw Error(fmt::format("--no-next-event: is for path and guided-path; {} finds light in more ways", o.integrator));
   for (const Light& light : scene.lights)
     if (has_no_extent(light.kind))
       throw Error("--no-next-event: the scene has lights without extent, which no ray can hit; leave it out");

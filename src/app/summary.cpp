@@ -56,17 +56,24 @@ nlohmann::ordered_json options_json(const Run& run, const Film& film) {
   return j;
 }
 
-// Loading, building and writing around the render's own phases.
-nlohmann::ordered_json phases_of(double load, double build, nlohmann::ordered_json render, double write) {
+// Loading, building, logs and checkpoints, and writing around the render's own phases.
+nlohmann::ordered_json phases_of(double load, double build, nlohmann::ordered_json render, double beside,
+                                 double write) {
   nlohmann::ordered_json j = {{"load", load}, {"build", build}};
   j.update(render);
-  j["write"] = write;
+  j["beside"] = beside, j["write"] = write;
   return j;
 }
 
 }  // namespace
 
 std::string record_of(const nlohmann::ordered_json& summary) { return text_of(summary, 2) + "\n"; }
+
+RenderOptions without_start(RenderOptions options, const Run& run) {
+  if (options.seconds > 0) options.seconds = std::max(options.seconds - run.build_seconds, 1e-3);
+  if (options.cpu_seconds > 0) options.cpu_seconds = std::max(options.cpu_seconds - run.build_cpu, 1e-3);
+  return options;
+}
 
 nlohmann::ordered_json summary(const Run& run, const RenderState& state) {
   const Counters& n = state.stats.counters;
@@ -80,10 +87,12 @@ nlohmann::ordered_json summary(const Run& run, const RenderState& state) {
   j["spp"] = spp_of(state.film);
   j["interrupted"] = run.interrupted;
   const RenderStats& stats = state.stats;
-  j["seconds"] = phases_of(run.load_seconds, run.build_seconds,
-                           phases_json(stats.seconds, stats.learn_seconds, stats.ticks), run.write_seconds);
-  j["cpu_seconds"] = phases_of(run.load_cpu, run.build_cpu,
-                               phases_json(stats.cpu_seconds, stats.learn_cpu_seconds, stats.ticks), run.write_cpu);
+  j["seconds"] =
+      phases_of(run.load_seconds, run.build_seconds, phases_json(stats.seconds, stats.learn_seconds, stats.ticks),
+                run.beside_seconds, run.write_seconds);
+  j["cpu_seconds"] =
+      phases_of(run.load_cpu, run.build_cpu, phases_json(stats.cpu_seconds, stats.learn_cpu_seconds, stats.ticks),
+                run.beside_cpu, run.write_cpu);
   j["triangles"] = run.triangles;
   j["rays"] = {{"camera", n.camera_rays}, {"light", n.light_rays}, {"shadow", n.shadow_rays}};
   j["rays_per_second"] = per(rays, state.stats.seconds);

@@ -22,8 +22,8 @@ struct Run {
   std::string light_choice;              ///< of light_choice_names
   std::string load_fields, save_fields;  ///< files, empty: none
   RenderOptions options;
-  double load_seconds = 0, build_seconds = 0, write_seconds = 0;
-  double load_cpu = 0, build_cpu = 0, write_cpu = 0;
+  double load_seconds = 0, build_seconds = 0, beside_seconds = 0, write_seconds = 0;
+  double load_cpu = 0, build_cpu = 0, beside_cpu = 0, write_cpu = 0;  ///< beside: log and checkpoints meanwhile
   uint64_t triangles = 0, accel_bytes = 0;
   int threads = 1;
   bool interrupted = false;
@@ -32,6 +32,8 @@ struct Run {
   bool planned = false;
 };
 
+/// The options with what building has left of their time: the user's begins after loading.
+RenderOptions without_start(RenderOptions options, const Run& run);
 nlohmann::ordered_json summary(const Run& run, const RenderState& state);
 /// The text of the file that holds it; bytes of names that are no UTF-8 are replaced.
 std::string record_of(const nlohmann::ordered_json& summary);

@@ -34,6 +34,7 @@ uint64_t checksum(const void* data, size_t n, uint64_t sum) {
 }
 
 std::string difference(std::string_view there, std::string_view here) {
+  if (there.ends_with('}') && here.ends_with('}')) there.remove_suffix(1), here.remove_suffix(1);
   const auto take = [&](size_t front, size_t back) {
     for (std::string_view* key : {&there, &here}) key->remove_prefix(front), key->remove_suffix(back);
   };
@@ -60,6 +61,8 @@ Reader::Reader(const std::string& file, const FileKind& file_kind) : path(file),
   if (!std::filesystem::is_regular_file(path, error)) {
     if (std::filesystem::is_directory(path, error))
       throw Error(fmt::format("{}: is a folder; name a {}", path, kind.name));
+    if (!error && std::filesystem::exists(path, error))
+      throw Error(fmt::format("{}: is no regular file; copy this {} to one", path, kind.name));
     if (!error || error == std::errc::no_such_file_or_directory)
       throw Error(fmt::format("{}: no such {}; {}", path, kind.name, kind.make));
     throw Error(fmt::format("{}: this {} cannot be read ({})", path, kind.name, error.message()));

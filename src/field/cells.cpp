@@ -168,7 +168,7 @@ size_t top_cube(const CellTable& table, const Vec3& p) { return top_cube(table, 
 Place find(const CellTable& table, const Vec3& p, const Vec3& n) {
   if (!table.probes.empty()) return find_probe(table, p, n);
   const Vec3 at_finest = scaled(table, p);
-  if (!in_range(at_finest)) return {};
+  if (table.slots.empty() || !in_range(at_finest)) return {};
   const glm::uvec3 c = coordinates(at_finest);
   const uint32_t kind = normal_bin(n) | compartment_of(table, c, p) << 5;
   const CellKey top = make_key(0, kind, c >> uint32_t(most_cell_levels));

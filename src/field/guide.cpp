@@ -27,9 +27,10 @@ float boundary(float share, float ior) {
   return std::min(3 * s / std::max(s + (1 - share) * (1 - reflected), 1e-6f), 1.0f);
 }
 
+// 1 up to a roughness of 0.1, which fields of a few dozen strata cannot resolve, 0 from 0.5 on.
 float narrow(float alpha) { return 1 - std::clamp((alpha - 0.1f) * 2.5f, 0.0f, 1.0f); }
 
-// The same of all that is on its base: what metal reflects, it reflects at all angles.
+// What lobe widths allow, over all that is on the base: what metal reflects, it reflects at all angles.
 float breadth(const Principled& p) {
   const float base = max_component(p.base), dielectric = 1 - p.metallic;
   const float reflected = dielectric * sqr((p.eta - 1) / (p.eta + 1)), coat = 0.04f * p.clearcoat;
@@ -39,7 +40,7 @@ float breadth(const Principled& p) {
   return std::max(1 - narrow_part / std::max(all, 1e-6f), 0.0f);
 }
 
-// How far a field of incident light or importance alone, without the bsdf, is a good guide: not for narrow lobes.
+// How good a guide the field alone is, without the bsdf: 0 for narrow lobes, 1 for diffuse ones.
 float breadth(const Lobe& lobe) {
   switch (lobe.kind) {
     case LobeKind::diffuse:

@@ -72,6 +72,9 @@ void learn_opening(const Rebuild& w, uint32_t cell, FieldCell& next) {
 // Portals stay where they are from this lesson on.
 constexpr uint32_t settled = 8;
 
+// What strata weigh at least [per solid angle], of a sum of weights: a share of what they would if all were alike.
+float floor_for(float sum) { return 0.03f * sum / pi; }
+
 // Strata of a portal: there are few, so they may be fine. What a portal held before it moved is a first guess.
 FieldCell learn_portal(Rebuild& w, const FieldCell& old, bool moved, Trees& out) {
   LearnOptions fine = *w.options;
@@ -84,7 +87,7 @@ FieldCell learn_portal(Rebuild& w, const FieldCell& old, bool moved, Trees& out)
       for (float& weight : n.weight) weight *= 0.1f;
   const float bare = weigh(w.tree, Structure::adaptive, 0);
   next.mix = bare > 0 ? mix_for(fine, evidence(w.tree)) : 0;
-  const float floor = 0.03f * bare / pi;
+  const float floor = floor_for(bare);
   if (const float total = weigh(w.tree, Structure::adaptive, floor); total > 0) {
     reshape(w.tree, total, fine, true);
     weigh(w.tree, Structure::adaptive, floor);
@@ -131,7 +134,7 @@ FieldCell learn_cell(Rebuild& w, uint32_t cell, double area, double paths, Trees
   take(*w.field, *w.tallies, w.options->forget, old.root, w.tree);
   const float bare = weigh(w.tree, w.structure, 0);
   const bool even = w.structure == Structure::adaptive && contrast(w.tree) < w.options->least_contrast;
-  const float floor = 0.03f * bare / pi;
+  const float floor = floor_for(bare);
   const float total = weigh(w.tree, w.structure, floor);
   next.mix = bare > 0 ? mix_for(*w.options, evidence(w.tree)) : 0;
   next.direct = direct_of(w, cell);

@@ -69,6 +69,13 @@ void merge(Film& film, const std::vector<std::vector<Splat>>& chunks) {
   });
 }
 
+Film frame_of(const Film& film) {
+  Film frame;
+  frame.x0 = film.x0, frame.y0 = film.y0, frame.width = film.width, frame.height = film.height;
+  frame.filter = film.filter, frame.splats = film.splats;
+  return frame;
+}
+
 void drop_passes(Film& film) {
   for (auto* sums : {&film.camera_sum, &film.splat_sum, &film.half_sum, &film.square_sum})
     std::fill(sums->begin(), sums->end(), glm::dvec3(0));

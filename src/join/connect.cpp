@@ -10,13 +10,6 @@ End end_on_light(int n, double own, double other, const Vertex& before, double o
   return {n, own, other, before.own, other_before, before.delta, sum, 0, false, before.seen};
 }
 
-// Of strategies that find light from this vertex; first: Shares::light_first.
-Shares shares_from(const Vertex& v, double first, double light_paths) {
-  Shares shares{first, light_paths};
-  shares.next_events = v.next_events;
-  return shares;
-}
-
 }  // namespace
 
 bool join_hit(const Scene& scene, const Fields* fields, const Subpath& camera, const Surface& surface, Candidate& out) {
@@ -31,8 +24,9 @@ bool join_hit(const Scene& scene, const Fields* fields, const Subpath& camera, c
   const Vertex& before = camera[camera.n - 2];
   out.light = {};
   out.camera = end_on_light(camera.n, v.own, emission.position, before, emission.direction * v.back, v.sum);
-  const double first = camera.n > 2 ? direct_share(scene, before, point, -v.guide.wo, v.distance2, emission) : 0;
-  out.shares = shares_from(before, first, 1);
+  const bool may_ask = camera.n > 2;  // lights, from the vertex before
+  out.nee.ratio = may_ask ? ratio_of_next_event(scene, before, point, -v.guide.wo, v.distance2, emission) : 0;
+  out.nee.rays = before.next_events;
   return true;
 }
 
@@ -50,12 +44,13 @@ bool join_escape(const Scene& scene, const Fields* fields, uint32_t light, const
   const double cosine = std::abs(glm::dot(before.ng, walk.d));
   out.light = {};
   out.camera = end_on_light(camera.n + 1, walk.pdf, emission.direction, before, emission.position * cosine, walk.sum);
-  out.shares = shares_from(before, camera.n > 1 ? direct_share(scene, before, point, walk.d, 1, emission) : 0, 1);
+  out.nee.ratio = camera.n > 1 ? ratio_of_next_event(scene, before, point, walk.d, 1, emission) : 0;
+  out.nee.rays = before.next_events;
   return true;
 }
 
 bool join_light(const Scene& scene, const Fields* fields, const Subpath& camera, int t, LightChances& chances,
-                const LightNumbers& u, double light_paths, Candidate& out) {
+                const LightNumbers& u, Candidate& out) {
   const Vertex& c = camera[t - 1];
   DirectSample d;
   const bool found = sample_next_event(scene, c.guide, chances, u, d);
@@ -77,17 +72,17 @@ bool join_light(const Scene& scene, const Fields* fields, const Subpath& camera,
   out.light = {.n = 1, .own = own, .sum_before = hittable ? 1.0 : 0.0};
   out.light_found = {&c.guide, d.wi, e.pdf, cos_light, d2};
   out.camera = end_at(camera.first(t), to_here * cos_here / d2, e.pdf_reverse);
-  out.shares = shares_from(c, ratio(nee, own), light_paths);
+  out.nee = {ratio(nee, own), double(c.next_events)};
   out.segment = segment_to(d, c.p, c.ng, c.error);
   return true;
 }
 
-LightEnd light_end(std::span<const Vertex> light, double share) {
+LightEnd light_end(std::span<const Vertex> light, double nee_ratio) {
   const Vertex& before = light[light.size() - 2];
-  return {&light.back(), int(light.size()), before.delta, before.own, share};
+  return {&light.back(), int(light.size()), before.delta, before.own, nee_ratio};
 }
 
-bool join_vertices(const LightEnd& light, std::span<const Vertex> camera, double light_paths, Candidate& out) {
+bool join_vertices(const LightEnd& light, std::span<const Vertex> camera, Candidate& out) {
   const Vertex& a = *light.vertex;
   const Vertex& c = camera.back();
   const Vec3 between = c.p - a.p;
@@ -105,14 +100,13 @@ bool join_vertices(const LightEnd& light, std::span<const Vertex> camera, double
   out.light_found = {&c.guide, -w, ec.pdf, std::abs(glm::dot(a.ng, w)), d2};
   out.camera = end_at(camera, 0, ec.pdf_reverse);
   out.camera_found = {&a.guide, w, ea.pdf, std::abs(glm::dot(c.ng, w)), d2};
-  out.shares = {light.share, light_paths};
+  out.nee = {light.nee_ratio, 1};
   const Vec3 from = offset(c.p, c.ng, c.error, -w);
   out.segment = {from, shadow_end(a.p, a.ng, a.error, w, distance) - from};
   return true;
 }
 
-bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int s, double share, double light_paths,
-                 Candidate& out) {
+bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int s, double nee_ratio, Candidate& out) {
   const Vertex& a = light[s - 1];
   if (s == 1 ? !shows_lights(scene.camera, 1) : is_passed(scene, a.shape)) return false;
   CameraConnection k;
@@ -130,7 +124,7 @@ bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int
   }
   if (is_black(out.value)) return false;
   out.camera = {.n = 1};
-  out.shares = {share, light_paths};
+  out.nee = {nee_ratio, 1};
   out.raster = k.raster;
   const Vec3 from = a.ng == Vec3(0) ? a.p : offset(a.p, a.ng, a.error, k.w);
   out.segment = {from, k.p - from};

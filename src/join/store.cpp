@@ -59,20 +59,20 @@ Seer seer_of(const Joiner& j) {
 
 void clear(LightStore& store) { store.vertices.clear(), store.entries.clear(), store.blocks.clear(), store.paths = 0; }
 
-void add(LightStore& store, const Subpath& light, double share) {
+void add(LightStore& store, const Subpath& light, double nee_ratio) {
   ++store.paths;
   for (int s = 2; s <= light.n; ++s) {
     const Vertex& v = light[s - 1];
     if (!connectable(v.guide)) continue;
     const float flux = flux_of(v);
     if (!(flux > 0)) continue;
-    const LightEnd end = light_end(light.first(s), share);
+    const LightEnd end = light_end(light.first(s), nee_ratio);
     store.entries.push_back({.vertex = uint32_t(store.vertices.size()),
                              .s = s,
                              .delta_before = end.delta_before,
                              .only_joined = only_joined(light.first(s)),
                              .own_before = end.own_before,
-                             .share = share,
+                             .nee_ratio = nee_ratio,
                              .region = region_of(v.guide),
                              .path = store.paths - 1,
                              .flux = flux,
@@ -82,29 +82,25 @@ void add(LightStore& store, const Subpath& light, double share) {
 }
 
 namespace {
-// near: of an entry, by its number.
-template <class Near>
-void make_blocks(LightStore& store, const Near& near, bool in_order) {
-  const uint32_t all = uint32_t(store.entries.size()), n = (all + LightStore::width - 1) / LightStore::width;
-  store.blocks.assign(n, {});
-  for (uint32_t i = 0; i < all; ++i) {
-    const LightStore::Entry& at = store.entries[i];
-    if (in_order)
-      put(store.blocks[i / LightStore::width], i % LightStore::width, store.vertex(at), at, near(i));
-    else
-      put(store.blocks[i % n], i / n, store.vertex(at), at, near(i));
-  }
+void clear_blocks(LightStore& store) {
+  store.blocks.assign((store.entries.size() + LightStore::width - 1) / LightStore::width, {});
 }
 }  // namespace
 
-void finish(LightStore& store) {
-  make_blocks(
-      store, [&](uint32_t i) { return float(near_of(store.vertex(store.entries[i]))); }, false);
+void deal_blocks(LightStore& store) {
+  clear_blocks(store);
+  const size_t n = store.blocks.size();
+  for (size_t i = 0; i < store.entries.size(); ++i) {
+    const Vertex& v = store.vertex(store.entries[i]);
+    put(store.blocks[i % n], uint32_t(i / n), v, store.entries[i], float(near_of(v)));
+  }
 }
 
-void finish(LightStore& store, std::span<const float> near) {
-  make_blocks(
-      store, [&](uint32_t i) { return near[i]; }, true);
+void lay_blocks(LightStore& store, std::span<const float> near) {
+  clear_blocks(store);
+  for (size_t i = 0; i < store.entries.size(); ++i)
+    put(store.blocks[i / LightStore::width], uint32_t(i % LightStore::width), store.vertex(store.entries[i]),
+        store.entries[i], near[i]);
 }
 
 void append(LightStore& store, const LightStore& more) {
@@ -155,8 +151,8 @@ uint32_t find(const Sums& sums, const Values& values, float at) {
 // root of what was expected, since what seems to bring most is mostly hidden: measured.
 float joins_for(const Joiner& joiner, float brings) {
   if (!(joiner.worth > 0)) return 1;
-  return std::clamp(joiner.joins * std::sqrt(joiner.worth * brings), 0.1f, 32.0f);
-}  // (J3)
+  return std::clamp(joiner.joins * std::sqrt(joiner.worth * brings), 0.1f, 32.0f);  // (J3)
+}
 
 // Of so many blocks from one on, and around.
 void expect_some(const LightStore& store, const Joiner& joiner, uint32_t from, uint32_t count, Expectation& out) {
@@ -216,7 +212,8 @@ void expect_all(const LightStore& store, const Vertex& camera, int most, const P
 }
 
 namespace {
-// A number in (0, 1) of each light vertex of a block: none that is drawn with every chance, however small.
+// A number in (0, 1) of each light vertex of a block: never 0, by which a vertex without a chance would be drawn,
+// nor 1. (MurmurHash3's finaliser, Appleby 2008.)
 void draw_numbers(const LightStore::Block& b, uint32_t key, Values& out) {
   for (uint32_t i = 0; i < LightStore::width; ++i) {
     uint32_t h = (b.path[i] * 64 + uint32_t(b.s[i])) * 0x9e3779b9u ^ key;

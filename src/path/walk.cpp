@@ -6,24 +6,24 @@ namespace ajar {
 namespace {
 
 // v_i of (R2) for i = n - 1 >= 1, the strategy that would connect the last vertex to the one before it.
-double share_of_last(const WalkOptions& options, const Subpath& subpath, const Walk& walk) {
+double v_of_walk(const WalkOptions& options, const Subpath& subpath, const Walk& walk) {
   const int last = subpath.n - 1;
   if (subpath[last].delta || subpath[last - 1].delta) return 0;
-  const double join = subpath[last - 1].seen ? options.seen_share : options.inner_share;
-  return raise(options.heuristic, last == 1 ? walk.first_share : join);
+  const double join = subpath[last - 1].seen ? options.counts.seen : options.counts.inner;
+  return raise(options.heuristic, last == 1 ? walk.v1 : join);
 }
 
 // S of the subpath's last vertex, now that its event is known.
 double sum_of_last(const WalkOptions& options, const Subpath& subpath, const Walk& walk) {
   const Vertex& last = subpath[subpath.n - 1];
   if (subpath.n == 1) return last.sum;
-  double share = share_of_last(options, subpath, walk);
+  double v = v_of_walk(options, subpath, walk);
   if (last.merge > 0 && !last.delta) {
-    const double part = walk.side == Side::camera ? 1 : options.merging.inner;
-    share += merge_at(options.heuristic, last.own, last.merge * part);  // (K5)
+    const double part = walk.side == Side::camera ? 1 : options.counts.merge_inner;
+    v += merge_at(options.heuristic, last.own, last.merge * part);  // (K5)
   }
   const double r = raise(options.heuristic, ratio(walk.other_before, subpath[subpath.n - 2].own));
-  return extend(share, r, last.sum);  // (R2)
+  return extend(v, r, last.sum);  // (R2)
 }
 
 // The new vertex that a walk found from the one before, on either side, but for what its merges count for.
@@ -41,7 +41,7 @@ void set_vertex(const Walk& walk, const Surface& surface, const Vertex& before, 
 
 // What the camera's vertices have beside: whether the lens sees them, for the first the density of its pixel, and for
 // those beyond the first that is merged how much less their merges count.
-void set_camera_vertex(const Camera& camera, const Merging& merging, bool first, const Vertex& before, Walk& walk,
+void set_camera_vertex(const Camera& camera, const SampleCounts& counts, bool first, const Vertex& before, Walk& walk,
                        Vertex& v) {
   v.seen = first || (before.seen && before.delta);
   if (first) {
@@ -49,7 +49,7 @@ void set_camera_vertex(const Camera& camera, const Merging& merging, bool first,
     return;
   }
   walk.straight &= before.delta;
-  if (!walk.straight) v.merge *= float(merging.inner);
+  if (!walk.straight) v.merge *= float(counts.merge_inner);
 }
 
 }  // namespace
@@ -72,7 +72,7 @@ void start_camera(const Scene& scene, const WalkOptions& options, const Vec2& ra
   v.beta = Rgb(1);
   walk = Walk{};
   walk.o = ray.o, walk.d = ray.d, walk.t_min = ray.t_min, walk.t_max = ray.t_max;
-  walk.first_share = options.light_paths;
+  walk.v1 = options.counts.light_paths;
 }
 
 bool start_light(const Scene& scene, const WalkOptions& options, Sampler& sampler, Subpath& subpath, Walk& walk) {
@@ -105,8 +105,8 @@ bool start_light(const Scene& scene, const WalkOptions& options, Sampler& sample
   return true;
 }
 
-double direct_share(const Scene& scene, const Vertex& x, const LightPoint& point, const Vec3& wi, double distance2,
-                    const EmissionPdf& emission) {
+double ratio_of_next_event(const Scene& scene, const Vertex& x, const LightPoint& point, const Vec3& wi,
+                           double distance2, const EmissionPdf& emission) {
   double direct;
   // Where the normals disagree nothing scatters but what is merged, beside it, by a normal that is bent otherwise.
   if (x.guide.blocked) {
@@ -134,13 +134,13 @@ bool step(const Scene& scene, const Accel& accel, const WalkOptions& options, Su
   Vertex& v = subpath.add();
   const Vertex& before = subpath[subpath.n - 2];
   set_vertex(walk, surface, before, v);
-  v.shape = hit.shape, v.instance = hit.instance;
+  v.shape = hit.shape;
   v.merge = merge_density(options.merging, v.p);
-  if (by_camera) set_camera_vertex(scene.camera, options.merging, first, before, walk, v);
+  if (by_camera) set_camera_vertex(scene.camera, options.counts, first, before, walk, v);
   make_guide(scene, options.fields, walk.side, surface, -walk.d, v.guide);
   if (first && !by_camera)
-    walk.first_share =
-        direct_share(scene, v, before.point, -walk.d, v.distance2, {walk.start.pdf_position, walk.start.pdf_direction});
+    walk.v1 = ratio_of_next_event(scene, v, before.point, -walk.d, v.distance2,
+                                  {walk.start.pdf_position, walk.start.pdf_direction});
   return true;
 }
 
@@ -149,9 +149,10 @@ bool scatter(const WalkOptions& options, Sampler& sampler, Subpath& subpath, Wal
   const Mode mode = walk.side == Side::camera ? Mode::radiance : Mode::importance;
   GuideSample s;
   walk.beta = v.beta;
-  if (!choose_direction(v.guide, mode, options, subpath.n, sampler, walk.beta, walk.survival, walk.promise, s))
-    return false;
-  walk.sure = walk.sure && s.survival_probability == 1;
+  const float q =
+      choose_direction(v.guide, mode, options, subpath.n, sampler, walk.beta, walk.survival, walk.promise, s);
+  if (q == 0) return false;
+  walk.sure = walk.sure && q == 1;
   v.delta = s.delta;
   walk.o = offset(v.p, v.ng, v.error, s.wi);
   walk.d = s.wi;

@@ -34,7 +34,7 @@ void fill_pools(const Job& job, const Film& film, uint32_t from, Batch& batch) {
   for (size_t i = 0; i < batch.halves.size(); ++i) stores[i % stores.size()].push_back(&batch.halves[i].store);
   parallel_for(uint32_t(stores.size()), [&](uint32_t k) {
     subsample(batch.pools[k], stores[k], pooled_lights, number_of(job, film, ~(from + k)));
-    finish(batch.pools[k]);
+    deal_blocks(batch.pools[k]);
   });
 }
 
@@ -42,9 +42,9 @@ void gather_photons(Job& job, Batch& batch) {
   if (!(job.walk.merging.paths > 0)) return;
   std::vector<const Photons*> photons, few;
   for (const Halves& h : batch.halves) photons.push_back(&h.photons), few.push_back(&h.few);
-  fill(batch.photons[0], job.walk.merging, photons);
-  if (job.walk.merging.inner > 0) fill(batch.photons[1], job.walk.merging, few);
-  job.photons = batch.photons;
+  fill(batch.photons.all, job.walk.merging, photons);
+  if (job.walk.counts.merge_inner > 0) fill(batch.photons.few, job.walk.merging, few);
+  job.photons = &batch.photons;
 }
 
 }  // namespace
@@ -64,6 +64,7 @@ void trace_in_halves(Job& job, Film& film, uint32_t from, Batch& batch, std::vec
   job.kept = 2 * pooled_lights * double(batch.pools.size()) / count;
   parallel_for(count, [&](uint32_t i) {
     Scratch& scratch = at_work(i);
+    begin_samples(job, film, from + i, scratch);
     trace_light_halves(job, film, from + i, scratch);
     batch.rejected_at[i] = scratch.rejected_at;
   });
@@ -86,7 +87,7 @@ void trace_in_halves(Job& job, Film& film, uint32_t from, Batch& batch, std::vec
 void trace_whole(const Job& job, Film& film, uint32_t from, Batch& batch, std::vector<Scratch>& scratches) {
   parallel_for(uint32_t(batch.splats.size()), [&](uint32_t i) {
     Scratch& scratch = prepare(job, batch, i, scratches[thread_slot()]);
-    trace_light_halves(job, film, from + i, scratch);
+    begin_samples(job, film, from + i, scratch);
     scratch.pool = nullptr;
     trace_camera_halves(job, film, {}, scratch);
     batch.rejected_at[i] = scratch.rejected_at;

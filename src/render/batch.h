@@ -3,6 +3,7 @@
 #pragma once
 
 #include "job.h"
+#include "merge.h"
 
 namespace ajar {
 
@@ -14,7 +15,7 @@ struct Batch {
   std::vector<uint64_t> rejected_at;  ///< path of each chunk's first rejected value
   std::vector<Halves> halves;         ///< only where light subpaths of the whole batch are joined or merged
   std::vector<LightStore> pools;      ///< likewise; a sample's camera half reads one of them
-  PhotonMap photons[2];
+  PhotonMaps photons;
 };
 
 /// Empties a batch, for so many chunks.

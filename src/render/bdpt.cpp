@@ -4,6 +4,8 @@
 
 #include "bdpt.h"
 #include "ajar/path/arrival.h"
+#include "integrators.h"
+#include "merge.h"
 
 namespace ajar {
 namespace {
@@ -25,8 +27,8 @@ void teach_light(const Work& work, const Vertex& v, LightChances& chances, const
   record_next_event(*job.scene, v.guide, chances, *job.training, c.point, lit ? max_component(c.arrives) : 0);
   if (lit && job.guided && c.point.infinite)
     record_start(*job.scene, *job.walk.fields, *job.training, c.point, c.light_found.w,
-                 {&v.guide, c.light.own * c.shares.light_first}, 1, count);
-  charge(work.scratch, work.scratch.ledger->learn_ticks);
+                 {&v.guide, c.light.own * c.nee.ratio}, 1, count);
+  charge(work.scratch, &Ledger::learn_ticks);
 }
 
 // s = 0: the camera subpath ran into a light.
@@ -47,7 +49,7 @@ void join_surface(Work& work, const Surface& surface) {
 // points on a lamp.
 float share_of_next_event(const Work& work, const Candidate& c) {
   if (c.light.sum_before == 0) return 1;  // cannot be hit
-  const double nee = c.light.own * c.shares.light_first * c.shares.next_events;
+  const double nee = c.light.own * c.nee.ratio * c.nee.rays;
   return float(1 / (1 + raise(work.job.walk.heuristic, ratio(c.light.other, nee))));
 }
 
@@ -82,7 +84,7 @@ void join_next_event(Work& work, float worth) {
   for (int i = 0; i < count; ++i) {
     Candidate c;
     const LightNumbers u = spread(first, i, count);
-    const bool found = join_light(*job.scene, job.walk.fields, camera, t, chances, u, job.walk.light_paths, c);
+    const bool found = join_light(*job.scene, job.walk.fields, camera, t, chances, u, c);
     c.value /= float(count);
     const bool lit = found && add_if_visible(work, c, 1, t);
     charge_join(work.scratch, 1, t);
@@ -104,8 +106,8 @@ float left_to_joins(const Fields& fields, const Guide& guide, float worth) {
 Joiner joiner_of(const Job& job, const Subpath& camera, float worth) {
   const Vertex& v = camera[camera.n - 1];
   Joiner j{&v, job.walk.max_edges + 1 - camera.n, worth};
-  j.counts = v.seen ? job.walk.seen_share : job.walk.inner_share;
-  j.onwards = job.walk.inner_share;
+  j.counts = v.seen ? job.walk.counts.seen : job.walk.counts.inner;
+  j.onwards = job.walk.counts.inner;
   j.before = count_before(job.walk, camera);
   j.joins = (v.seen ? seen_joins : inner_joins) * job.effort;
   if (!v.seen || !(worth > 0) || v.guide.cell == none) return j;
@@ -134,7 +136,7 @@ void join_stored(Work& work, float worth) {
   for (const StoreChoice& choice : choices) {
     const LightStore::Entry& at = *choice.entry;
     Candidate c;
-    if (join_vertices(store.end(at), camera.first(camera.n), job.walk.light_paths, c)) {
+    if (join_vertices(store.end(at), camera.first(camera.n), c)) {
       c.value *= choice.weight;
       const bool seen = add_if_visible(work, c, at.s, camera.n);
       if (work.sample.teaches)
@@ -193,8 +195,7 @@ void join_all(Work& work) {
   Candidate c;
   for (int s = 2; s <= most; ++s)
     if (connectable(light[s - 1].guide)) {
-      if (join_vertices(light_end(light.first(s), work.light_share), camera.first(t), job.walk.light_paths, c))
-        add_if_visible(work, c, s, t);
+      if (join_vertices(light_end(light.first(s), work.nee_ratio), camera.first(t), c)) add_if_visible(work, c, s, t);
       charge_join(work.scratch, s, t);
     }
 }
@@ -266,8 +267,8 @@ void teach_camera(Work& work) {
 void trace_bdpt(const Job& job, Sample& sample, Scratch& scratch) {
   Work work{job, sample, scratch};
   scratch.light.n = 0;
-  if (job.walk.light_paths > 0 && !job.light_half) trace_light_subpath(work);
-  charge(scratch, scratch.ledger->light_ticks);
+  if (job.walk.counts.light_paths > 0 && !job.light_half) trace_light_subpath(work);
+  charge(scratch, &Ledger::light_ticks);
   Subpath& camera = scratch.camera;
   Walk walk;
   start_camera(*job.scene, job.walk, sample.raster, sample.lens, camera, walk);
@@ -276,7 +277,7 @@ void trace_bdpt(const Job& job, Sample& sample, Scratch& scratch) {
   do {
     ++scratch.counters.camera_rays;
     const bool hit = step(*job.scene, *job.accel, job.walk, camera, walk, surface);
-    charge(scratch, scratch.ledger->camera_ticks);
+    charge(scratch, &Ledger::camera_ticks);
     if (!hit) {
       join_escapes(work, walk);
       break;
@@ -286,11 +287,11 @@ void trace_bdpt(const Job& job, Sample& sample, Scratch& scratch) {
     join_all(work);
     note_first(work, first);
   } while (camera.n <= job.walk.max_edges && scatter(job.walk, sample.sampler, camera, walk));
-  charge(scratch, scratch.ledger->camera_ticks);
+  charge(scratch, &Ledger::camera_ticks);
   note_beyond(work, first, walk);
   if (!sample.teaches || !job.guided) return;
   teach_camera(work);
-  charge(scratch, scratch.ledger->learn_ticks);
+  charge(scratch, &Ledger::learn_ticks);
 }
 
 }  // namespace ajar

@@ -132,14 +132,6 @@ void read_image(Reader& r, RenderState& state) {
   if (!state.pyramid.kept) state.pyramid = {};
 }
 
-// A film's place and filter, which are not in the file, without its arrays.
-Film frame_of(const Film& film) {
-  Film frame;
-  frame.x0 = film.x0, frame.y0 = film.y0, frame.width = film.width, frame.height = film.height;
-  frame.filter = film.filter, frame.splats = film.splats;
-  return frame;
-}
-
 // What a file of this state has to agree with, and what is not in it.
 RenderState frame_of(const RenderState& state) {
   RenderState frame;

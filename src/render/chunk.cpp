@@ -6,12 +6,13 @@
 
 #include "ajar/join/pool.h"
 #include "contribution.h"
+#include "place.h"
 
 namespace ajar {
 
 double light_halves(size_t samples, float rate) { return std::ceil(double(samples) * double(rate)); }
 
-uint32_t share_of(const Job& job, const Film& film) {
+uint32_t traced_one_in(const Job& job, const Film& film) {
   return job.guided && job.learning ? traced_one_in(*job.learning, film) : 1;
 }
 
@@ -40,12 +41,12 @@ Sample make_sample(const Job& job, const Film& film, int x, int y, uint32_t k = 
   const Vec2 centre(float(film.x0 + x) + 0.5f, float(film.y0 + y) + 0.5f);
   s.raster = centre + ajar::sample(film.filter, s.sampler.next2(), s.filter);
   if (job.scene->camera.kind == CameraKind::thinlens) s.lens = s.sampler.next2();
-  s.filter *= float(share_of(job, film)) / float(s.count);
+  s.filter *= float(traced_one_in(job, film)) / float(s.count);
   return s;
 }
 
 bool is_traced(const Job& job, const Film& film, int x, int y) {
-  const uint32_t n = share_of(job, film);
+  const uint32_t n = traced_one_in(job, film);
   return n == 1 || hash(hash(job.seed, film.dropped + film.passes), index_of(film, x, y)) % n == 0;
 }
 
@@ -98,7 +99,7 @@ float number_of(const Job& job, const Film& film, uint32_t chunk) {
   return to_unit(uint32_t(hash(hash(job.seed, 0x6a32), hash(film.dropped + film.passes, chunk)) >> 32));
 }
 
-void trace_light_halves(const Job& job, Film& film, uint32_t chunk, Scratch& scratch) {
+void begin_samples(const Job& job, Film& film, uint32_t chunk, Scratch& scratch) {
   const TileBounds bounds = tile_bounds(film, chunk);
   Halves& halves = *scratch.halves;
   scratch.rejected_at = Scratch::no_path;
@@ -110,16 +111,20 @@ void trace_light_halves(const Job& job, Film& film, uint32_t chunk, Scratch& scr
       film.camera[index_of(film, x, y)] = Rgb(0);
       if (is_traced(job, film, x, y)) halves.samples.push_back({make_sample(job, film, x, y)});
     }
+  halves.pixels = halves.samples.size();
+  add_further(job, film, halves.samples);
+  halves.splat_counts = float(traced_one_in(job, film));
+  if (halves.pixels > 0)
+    halves.splat_counts *= float(double(halves.pixels) / light_halves(halves.pixels, job.light_rate));
+}
+
+void trace_light_halves(const Job& job, const Film& film, uint32_t chunk, Scratch& scratch) {
+  Halves& halves = *scratch.halves;
   clear(halves.store), clear(scratch.traced);
   halves.photons.clear(), halves.few.clear();
-  const size_t count = halves.samples.size();
-  add_further(job, film, halves.samples);
-  halves.splat_counts = float(share_of(job, film));
-  if (count > 0) halves.splat_counts *= float(double(count) / light_halves(count, job.light_rate));
-  if (!job.light_half) return;
   const uint32_t recorded = job.learning ? light_recorded_one_in(*job.learning, film, job.light_rate) : 1;
   const size_t step = size_t(std::max(1 / job.light_rate, 1.0f)), each = size_t(std::max(job.light_rate, 1.0f));
-  for (size_t i = 0; i < count; i += step)
+  for (size_t i = 0; i < halves.pixels; i += step)
     for (size_t k = 0; k < each; ++k) {
       Sample sample = halves.samples[i].sample;
       sample.path += k * film.pixels();  // numbers of its own

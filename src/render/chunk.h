@@ -9,11 +9,13 @@ namespace ajar {
 /// A number of the chunk's own in the pass at hand, in [0, 1).
 float number_of(const Job& job, const Film& film, uint32_t chunk);
 /// One pixel in so many is traced.
-uint32_t share_of(const Job& job, const Film& film);
+uint32_t traced_one_in(const Job& job, const Film& film);
 /// Light halves of so many samples of a chunk.
 double light_halves(size_t samples, float rate);
-/// The samples of a chunk and, where light subpaths are stored, their light halves.
-void trace_light_halves(const Job& job, Film& film, uint32_t chunk, Scratch& scratch);
+/// Makes the samples of a chunk, whose pixels begin the pass black.
+void begin_samples(const Job& job, Film& film, uint32_t chunk, Scratch& scratch);
+/// The light halves of the samples that were begun, and what is stored of them.
+void trace_light_halves(const Job& job, const Film& film, uint32_t chunk, Scratch& scratch);
 /// Those samples of a chunk that join the light vertices of one pool.
 struct OfPool {
   uint32_t pool = 0, pools = 1;  ///< which, of how many

@@ -14,6 +14,10 @@ inline void charge(Scratch& scratch, uint64_t& part) {
   scratch.clock = now;
 }
 
+inline void charge(Scratch& scratch, uint64_t Ledger::*part) {
+  if (scratch.clock != 0) charge(scratch, scratch.ledger->*part);  // where nothing is timed there may be no ledger
+}
+
 /// A join was tried, with success or without.
 inline void charge_join(Scratch& scratch, int s, int t) {
   StrategyCost& cost = scratch.ledger->at(s, t);

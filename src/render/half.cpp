@@ -1,6 +1,9 @@
 // The light half of bidirectional path tracing: the light subpath, its joins to the lens, and what is kept of it.
 
 #include "bdpt.h"
+#include "integrators.h"
+#include "light.h"
+#include "merge.h"
 
 namespace ajar {
 namespace {
@@ -27,7 +30,7 @@ void teach_start(const Work& work, const Subpath& light, const Walk& walk, bool 
     brings = promise(first.guide, first.beta).all, per_watt = started > 0 ? brings / started : 0;
   }
   record_start(*work.job.scene, *work.job.walk.fields, *work.job.training, walk.start, brings, per_watt, way);
-  charge(work.scratch, work.scratch.ledger->learn_ticks);
+  charge(work.scratch, &Ledger::learn_ticks);
 }
 
 // Luminance of the infinite lights in a direction, as far as rays that hit them bring it better than next-event
@@ -62,12 +65,11 @@ void trace_light_subpath(Work& work) {
     const bool scatters_here = connectable(light[light.n - 1].guide);
     if (scatters_here && !arrived) teach_start(work, light, walk, true);
     arrived |= scatters_here;
-    work.light_share = walk.first_share;
+    work.nee_ratio = walk.v1;
     if (job.merges_alone || !scatters_here) continue;
     Candidate c;
-    const bool seen =
-        join_camera(*job.scene, work.sample.lens, light, light.n, work.light_share, job.walk.light_paths, c) &&
-        add_if_visible(work, c, light.n, 1);
+    const bool seen = join_camera(*job.scene, work.sample.lens, light, light.n, work.nee_ratio, c) &&
+                      add_if_visible(work, c, light.n, 1);
     charge_join(work.scratch, light.n, 1);
     teach_direct(work, light[light.n - 1], seen ? luminance(c.arrives) : 0);
   }
@@ -79,12 +81,12 @@ void trace_light_subpath(Work& work) {
 void trace_light_half(const Job& job, Sample& sample, Scratch& scratch) {
   Work work{job, sample, scratch};
   trace_light_subpath(work);
-  if (!job.merges_alone) add(scratch.traced, scratch.light, work.light_share);
-  if (job.walk.merging.paths > 0) keep_photons(job, sample, work.light_share, scratch);
-  charge(scratch, scratch.ledger->light_ticks);
+  if (!job.merges_alone) add(scratch.traced, scratch.light, work.nee_ratio);
+  if (job.walk.merging.paths > 0) keep_photons(job, sample, work.nee_ratio, scratch);
+  charge(scratch, &Ledger::light_ticks);
   if (!sample.teaches) return;
   record_subpath(*job.walk.fields, *job.training, scratch.sightings, scratch.light, Side::light);
-  charge(scratch, scratch.ledger->learn_ticks);
+  charge(scratch, &Ledger::learn_ticks);
 }
 
 }  // namespace ajar

@@ -9,9 +9,9 @@ namespace ajar {
 namespace {
 
 constexpr Integrator integrators[] = {
-    {.name = "path", .trace = trace_path},
+    {.name = "path", .trace = trace_path, .strategies = false},
     {.name = "bdpt", .trace = trace_bdpt, .splats = true},
-    {.name = "light", .trace = trace_light, .splats = true},
+    {.name = "light", .trace = trace_light, .splats = true, .strategies = false, .weighs = false},
     {.name = "guided-path", .trace = trace_bdpt, .guided = true},
     {.name = "guided-bdpt", .trace = trace_bdpt, .splats = true, .guided = true, .light_half = trace_light_half},
     {.name = "vcm", .trace = trace_bdpt, .splats = true, .light_half = trace_light_half, .merges = true},
@@ -21,7 +21,7 @@ constexpr Integrator integrators[] = {
      .guided = true,
      .light_half = trace_light_half,
      .merges = true},
-    {.name = "photon", .trace = trace_photon, .light_half = trace_light_half, .merges = true},
+    {.name = "photon", .trace = trace_photon, .light_half = trace_light_half, .merges = true, .weighs = false},
     {.name = "vpl", .trace = trace_vpl, .splats = true, .guided = true, .light_half = trace_light_half, .vpls = true},
     {.name = "plain-vpl", .trace = trace_vpl, .splats = true, .vpls = true}};
 
@@ -57,15 +57,9 @@ bool learns(const RenderOptions& options) { return is_guided(options.integrator)
 
 bool is_merging(const std::string& integrator) { return find_integrator(integrator).merges; }
 
-bool has_strategies(const std::string& integrator) {
-  const Trace trace = find_integrator(integrator).trace;
-  return trace != trace_path && trace != trace_light;
-}
+bool has_strategies(const std::string& integrator) { return find_integrator(integrator).strategies; }
 
-bool weighs_strategies(const std::string& integrator) {
-  const Trace trace = find_integrator(integrator).trace;
-  return trace != trace_light && trace != trace_photon;
-}
+bool weighs_strategies(const std::string& integrator) { return find_integrator(integrator).weighs; }
 
 LearnOptions learn_options(const RenderOptions& options) {
   LearnOptions o = options.learn;

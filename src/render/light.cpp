@@ -1,6 +1,8 @@
 // Light tracing alone: light subpaths, every vertex joined to the lens (t = 1).
 
+#include "light.h"
 #include "contribution.h"
+#include "integrators.h"
 
 namespace ajar {
 namespace {
@@ -10,8 +12,7 @@ void splat_last(const Job& job, const Sample& sample, Scratch& scratch) {
   const Subpath& light = scratch.light;
   if (light.n > 1 && !connectable(light[light.n - 1].guide)) return;
   Candidate c;
-  if (join_camera(*job.scene, sample.lens, light, light.n, 1, job.walk.light_paths, c) &&
-      is_unblocked(job, c.segment, light.n, 1, scratch))
+  if (join_camera(*job.scene, sample.lens, light, light.n, 1, c) && is_unblocked(job, c.segment, light.n, 1, scratch))
     add_splat(job, sample, scratch, c.raster, c.value, c.value);
   charge_join(scratch, light.n, 1);
 }
@@ -23,7 +24,7 @@ bool follow_light(const Job& job, Sampler& sampler, Scratch& scratch, Walk& walk
   if (light.n >= job.walk.max_edges || (light.n > 1 && !scatter(job.walk, sampler, light, walk))) return false;
   ++scratch.counters.light_rays;
   const bool hit = step(*job.scene, *job.accel, job.walk, light, walk, surface);
-  if (scratch.clock != 0) charge(scratch, scratch.ledger->light_ticks);  // else there may be no ledger
+  charge(scratch, &Ledger::light_ticks);
   return hit;
 }
 

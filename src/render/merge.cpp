@@ -1,5 +1,6 @@
 // Merging: camera vertices take the light that arrives at light vertices near them (Georgiev et al. 2012).
 
+#include "merge.h"
 #include "contribution.h"
 
 namespace ajar {
@@ -19,8 +20,11 @@ constexpr float worth_share = 0.1f, least_tried = 1.0f / 16;
 constexpr float least_disc = 0.125f;
 
 // Darts thrown for surface at most. Of those at a mask as many pass as its opacity says, but then a camera subpath
-// seldom stops there: all in all they cost no more.
-constexpr int most_darts = 16, most_darts_at_mask = 4096;
+// seldom stops there: all in all they cost no more. The same goes for what keeps no light vertices.
+constexpr int most_darts = 16, most_darts_at_holes = 4096;
+
+// What lies above each other within a disc, and keeps no light vertices, that a dart goes through.
+constexpr int most_bare = 8;
 
 // The surface about a camera vertex that it can be merged with.
 struct Disc {
@@ -64,21 +68,40 @@ bool sees(const Job& job, const Disc& disc, const Vec3& place) {
   return visible(*job.accel, {disc.v.p + disc.frame.n * disc.lift, place - disc.v.p, 1});
 }
 
-// One over the share of the disc that is surface, so that what lies at an edge or in a corner is not taken for dark:
-// the mean number of darts until one hits (Booth 2007).
+// Whether light vertices are kept on the side of n (add_photons): not on mirrors, clear glass and what is black.
+bool keeps_light(const Scene& scene, const Surface& at, const Vec3& n) {
+  Frame frame = at.frame;
+  Bsdf bsdf;
+  resolve(scene, at, n, frame, bsdf);
+  return bsdf.has_smooth;
+}
+
+// Whether a dart from above the disc hits surface of it; it goes through what is bare of light vertices.
+bool hits(const Job& job, const Disc& disc, Vec3 from, bool& bare) {
+  const Vec3& n = disc.frame.n;
+  float left = 2 * plane_share * disc.radius;
+  for (int i = 0; i < most_bare; ++i) {
+    Hit hit;
+    if (!job.accel->intersect(from, -n, 0, left, hit)) return false;
+    const Surface at = make_surface(*job.scene, hit, from, -n);
+    if (keeps_light(*job.scene, at, n)) return std::abs(glm::dot(at.ng, n)) > facing_share && sees(job, disc, at.p);
+    bare = true;
+    from = offset(at.p, at.ng, at.error, -n);
+    left -= hit.t;
+  }
+  return false;
+}
+
+// One over the share of the disc that is surface with light vertices, so that what lies at an edge or in a corner is
+// not taken for dark: the mean number of darts until one hits (Booth 2007).
 float over_coverage(const Job& job, const Disc& disc, Sampler& sampler) {
   const float height = plane_share * disc.radius;
-  const Frame& frame = disc.frame;
-  const int most = job.scene->shapes[disc.v.shape].mask == none ? most_darts : most_darts_at_mask;
+  bool holes = job.scene->shapes[disc.v.shape].mask != none;
   int darts = 1;
-  for (; darts < most; ++darts) {
+  for (; darts < (holes ? most_darts_at_holes : most_darts); ++darts) {
     const Vec2 u = sampler.next2();
     const float r = disc.radius * std::sqrt(u.x), phi = 2 * pi * u.y;
-    const Vec3 from = disc.v.p + frame.to_world({r * std::cos(phi), r * std::sin(phi), height});
-    Hit hit;
-    if (!job.accel->intersect(from, -frame.n, 0, 2 * height, hit)) continue;
-    const Surface at = make_surface(*job.scene, hit, from, -frame.n);
-    if (std::abs(glm::dot(at.ng, frame.n)) > facing_share && sees(job, disc, at.p)) break;
+    if (hits(job, disc, disc.v.p + disc.frame.to_world({r * std::cos(phi), r * std::sin(phi), height}), holes)) break;
   }
   return float(darts);  // (K4)
 }
@@ -121,29 +144,23 @@ Sampler own_numbers(const Job& job, const Sample& sample, int t) {
   return make_sampler(SamplerKind::independent, hash(job.seed, place), Side::camera, sample.path, sample.pass);
 }
 
-Shares shares_of(const WalkOptions& walk) {
-  Shares shares;
-  shares.camera_first = walk.light_paths, shares.inner = walk.inner_share, shares.seen = walk.seen_share;
-  shares.first_seen = walk.first_seen;
-  return shares;
-}
-
 // What all light vertices within the radius would bring, were they in sight. Returns the luminance of their sum.
 float find_near(const Job& job, const Subpath& camera, bool inner, float radius, Scratch& scratch) {
   const int t = camera.n, most = job.walk.max_edges + 2 - t;
   const Vertex& v = camera[t - 1];
-  const Shares shares = shares_of(job.walk);
-  const MergeSide side = merge_side(job.walk.heuristic, end_at(camera.first(t), 0, 0), v.back, shares, Side::camera);
+  const SampleCounts& counts = job.walk.counts;
+  const MergeSide side =
+      merge_side(job.walk.heuristic, end_at(camera.first(t), 0, 0), v.back, counts.light_paths, counts);
   float sum = 0;
   scratch.near.clear();
-  for_each_near(job.photons[inner], v.p, radius, [&](const Photon& p) {
+  for_each_near(inner ? job.photons->few : job.photons->all, v.p, radius, [&](const Photon& p) {
     const float cosine = std::abs(glm::dot(v.guide.ng, p.wi));
     if (p.s > most || !same_surface(v, radius, p) || !(cosine > 1e-6f)) return;
     if (job.final_gather > 0 && !inner && !p.straight) return;  // what gathers bring
     const GuideEval e = evaluate(v.guide, p.wi, Mode::radiance);
     if (is_black(e.f_cos)) return;
     ++scratch.ledger->merge_at(p.s, t).joins;
-    const MergeSide light{v.seen ? p.fixed * seen_factor(job.walk.heuristic, shares, p.s) : p.fixed, p.slope};
+    const MergeSide light{v.seen ? p.fixed * seen_factor(job.walk.heuristic, counts, p.s) : p.fixed, p.slope};
     const double w =
         job.merges_alone ? 1 : merge_weight(job.walk.heuristic, v.merge, light, e.pdf, side, e.pdf_reverse);
     scratch.near.push_back({&p, e.f_cos * p.beta / cosine, float(w)});  // (K1)
@@ -166,16 +183,17 @@ Merged sum_up(const Disc& disc, std::vector<NearPhoton>& near) {
   return sums;
 }
 
-}  // namespace
-
+// Whether the sample is one of every n; other ones from pass to pass.
 bool is_one_in(uint32_t n, const Sample& sample) { return hash(sample.path / n, sample.pass) % n == sample.path % n; }
 
-void keep_photons(const Job& job, const Sample& sample, double share, Scratch& scratch) {
+}  // namespace
+
+void keep_photons(const Job& job, const Sample& sample, double nee_ratio, Scratch& scratch) {
   const WalkOptions& walk = job.walk;
   Photons& photons = scratch.halves->photons;
   const size_t first = photons.size();
-  add_photons(photons, scratch.light, walk.heuristic, walk.inner_share, share);
-  if (walk.merging.inner > 0 && is_one_in(inner_photons, sample))
+  add_photons(photons, scratch.light, walk.heuristic, nee_ratio, walk.counts);
+  if (walk.counts.merge_inner > 0 && is_one_in(inner_photons, sample))
     scratch.halves->few.insert(scratch.halves->few.end(), photons.begin() + ptrdiff_t(first), photons.end());
 }
 
@@ -186,13 +204,13 @@ void join_merged(const Job& job, Sample& sample, Scratch& scratch) {
   if (!(v.merge > 0)) return;
   const float radius = merge_radius(job.walk.merging, v.p), full = merge_density(job.walk.merging, v.p);
   const bool inner = v.merge < full;
-  const float few = inner ? float(inner_photons) : 1;
+  const float stands_for = inner ? float(inner_photons) : 1;  // light vertices, each
   std::vector<NearPhoton>& near = scratch.near;
   const float sum = find_near(job, camera, inner, radius, scratch);
   if (!near.empty() && !(sum <= 0)) {  // what is no number is counted when it is added
     Sampler sampler = own_numbers(job, sample, t);
     const Vec2 u = sampler.next2();
-    const float adds = luminance(v.beta) * sum * few / full;
+    const float adds = luminance(v.beta) * sum * stands_for / full;
     const float tried = inner ? chance_to_try(adds, luminance(sample.value)) : 1;
     if (u.y >= tried) return charge(scratch, scratch.ledger->merge_at(0, t).ticks);
     const Disc disc = disc_about(job, v, radius);
@@ -200,7 +218,7 @@ void join_merged(const Job& job, Sample& sample, Scratch& scratch) {
     const float of_disc = full * sqr(disc.radius / radius) * tried;
     const float seen = near.empty() ? 0 : share_in_sight(job, disc, near, u.x);
     if (seen > 0)
-      add_merged(sums, t, v.beta * (few * seen * over_coverage(job, disc, sampler) / of_disc), sample, scratch);
+      add_merged(sums, t, v.beta * (stands_for * seen * over_coverage(job, disc, sampler) / of_disc), sample, scratch);
   }
   charge(scratch, scratch.ledger->merge_at(0, t).ticks);
 }

@@ -3,6 +3,9 @@
 #include <bit>
 
 #include "chunk.h"
+#include "integrators.h"
+#include "place.h"
+#include "takeover.h"
 
 namespace ajar {
 namespace {
@@ -97,16 +100,16 @@ void plan_light(bool merges, RenderState& state, Pass& pass) {
   if (const float effort = looks ? effort_for(state.stats.ledger) : 0; effort > 0) state.effort = effort;
   job.effort = state.effort;
   if (job.guided && job.light_half)
-    job.walk.seen_share = std::max(most_seen_joins * sqr(double(state.effort)), least_seen_joins);
+    job.walk.counts.seen = std::max(most_seen_joins * sqr(double(state.effort)), least_seen_joins);
   job.light_rate = chosen && !pass.plain && fields_know(state) ? state.light_rate : 1;
-  job.walk.light_paths = film.splats ? light_paths_of(film, 0, chunk_count(film), job.light_rate) : 0;
+  job.walk.counts.light_paths = film.splats ? light_paths_of(film, 0, chunk_count(film), job.light_rate) : 0;
 }
 
 // How many camera subpaths go on. While fields know too little for the image, as many as they say.
 void balance_pass(RenderState& state, Pass& pass) {
   const Film& film = state.film;
   Balance& balance = state.balance;
-  const bool told = pass.job.guided && pass.job.trace == trace_bdpt && !pass.plain && fields_know(state);
+  const bool told = pass.job.guided && !pass.job.vpls && !pass.plain && fields_know(state);
   if (told && is_due(film, 4)) rebalance(film, balance);
   if (told && balance.found.empty()) balance.found.resize(film.pixels());
   pass.job.walk.goes_on = balance.goes_on;
@@ -142,8 +145,7 @@ Merging merging_of(const Job& job, float radius, const Film& film) {
   const float pixels = radius * std::pow(float(film.passes + 1), -1.0f / 6);
   Merging m;
   m.paths = light_paths_of(film, film.chunks, count, job.light_rate);
-  m.paths /= share_of(job, film);
-  m.inner = merge_inner;
+  m.paths /= traced_one_in(job, film);
   const CameraRay ray = generate(camera, Vec2(camera.width, camera.height) * 0.5f, Vec2(0.5f));
   m.eye = ray.o;
   const float pixel = 1 / std::sqrt(raster_factor(camera, Vec3(0), ray.d));
@@ -162,8 +164,8 @@ void plan_vpls(const RenderState& state, Job& job) {
     return;
   }
   job.light_half = nullptr;
-  job.walk.light_paths = job.vpls->paths;
-  job.walk.inner_share = job.walk.seen_share = 0;  // the other weights are of s = 0, s = 1 and t = 1 alone
+  job.walk.counts.light_paths = job.vpls->paths;
+  job.walk.counts.inner = job.walk.counts.seen = 0;  // the other weights are of s = 0, s = 1 and t = 1 alone
 }
 
 }  // namespace
@@ -175,7 +177,10 @@ Pass plan_pass(const Job& job, const RenderOptions& options, RenderState& state)
   plan_light(merges, state, pass);
   balance_pass(state, pass);
   adapt_pass(options, state, pass);
-  if (merges) pass.job.walk.merging = merging_of(pass.job, options.merge_radius, film);
+  if (merges) {
+    pass.job.walk.merging = merging_of(pass.job, options.merge_radius, film);
+    pass.job.walk.counts.merge_inner = merge_inner;
+  }
   if (job.vpls) plan_vpls(state, pass.job);
   if (pass.plain) pass.job = plainly(pass.job);
   pass.chunks = pass.job.light_half ? equal_chunks(film, merges ? batch_chunks : pool_chunks)

@@ -1,6 +1,7 @@
 // Unidirectional path tracing with next-event estimation: camera subpaths, strategies s = 0 and s = 1 alone.
 
 #include "contribution.h"
+#include "integrators.h"
 
 namespace ajar {
 namespace {
@@ -39,7 +40,7 @@ Rgb direct(const Job& job, const Guide& guide, const Surface& at, Sampler& sampl
     if (!teaches) return;
     record_next_event(*job.scene, guide, chances, *job.training, d.point, arrives);
     record_place(guide, at.ng, *job.training, scratch.sightings);
-    charge(scratch, scratch.ledger->learn_ticks);
+    charge(scratch, &Ledger::learn_ticks);
   };
   const bool found = draw_light(*job.scene, guide, sampler, u) && sample_next_event(*job.scene, guide, chances, u, d);
   const GuideEval e = found ? evaluate(guide, d.wi, Mode::radiance) : GuideEval{};
@@ -77,7 +78,7 @@ void add(Sample& sample, Scratch& scratch, int s, int t, const Rgb& found) {
 // Chooses where the path goes on; false where it ends.
 bool scatter(const Job& job, const Guide& guide, const Surface& at, int edges, Sampler& sampler, Flight& f) {
   GuideSample s;
-  if (!choose_direction(guide, Mode::radiance, job.walk, edges + 1, sampler, f.beta, f.survival, f.promise, s))
+  if (choose_direction(guide, Mode::radiance, job.walk, edges + 1, sampler, f.beta, f.survival, f.promise, s) == 0)
     return false;
   f.o = offset(at.p, at.ng, at.error, s.wi), f.d = s.wi;
   f.t_min = 0, f.t_max = infinity;
@@ -101,7 +102,7 @@ void trace_path(const Job& job, Sample& sample, Scratch& scratch) {
     const bool hits =
         edges == 1 ? first_seen(scene, *job.accel, ray, hit) : job.accel->intersect(f.o, f.d, f.t_min, f.t_max, hit);
     const bool shows = shows_lights(scene.camera, edges);
-    charge(scratch, scratch.ledger->camera_ticks);
+    charge(scratch, &Ledger::camera_ticks);
     if (!hits) {
       if (shows && !scene.infinite_lights.empty())
         add(sample, scratch, 0, t, f.beta * hit_sky(scene, h, guide, f.d, f.pdf, f.alone));
@@ -112,7 +113,7 @@ void trace_path(const Job& job, Sample& sample, Scratch& scratch) {
       add(sample, scratch, 0, t, f.beta * hit_light(scene, h, guide, at, f.d, f.pdf, f.alone));
     if (edges >= job.walk.max_edges) return;
     make_guide(scene, job.walk.fields, Side::camera, at, -f.d, guide);
-    charge(scratch, scratch.ledger->camera_ticks);
+    charge(scratch, &Ledger::camera_ticks);
     if (job.next_event && connectable(guide) && !scene.lights.empty())
       add(sample, scratch, 1, t, f.beta * direct(job, guide, at, sample.sampler, t, sample.teaches, scratch));
     if (!scatter(job, guide, at, edges, sample.sampler, f)) return;

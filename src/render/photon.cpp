@@ -3,6 +3,8 @@
 // Zwicker 2011).
 
 #include "contribution.h"
+#include "integrators.h"
+#include "merge.h"
 
 namespace ajar {
 
@@ -39,7 +41,7 @@ void follow(const Job& job, Sample& sample, Scratch& scratch, Walk walk, bool ga
     ++scratch.counters.camera_rays;
     const bool shows = !gathers && shows_lights(scene.camera, camera.n);
     const bool hit = step(scene, *job.accel, job.walk, camera, walk, surface);
-    charge(scratch, scratch.ledger->camera_ticks);
+    charge(scratch, &Ledger::camera_ticks);
     if (!hit) {
       for (const uint32_t light : scene.infinite_lights)
         if (shows) add(camera.n + 1, walk.beta * environment(scene, light, walk.d));

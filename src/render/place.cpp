@@ -1,10 +1,12 @@
 // The virtual point lights of a pass: light subpaths are traced, and of their vertices those are kept that the field W
 // expects to bring something to the image, in proportion to how much (docs/method.md, "Virtual point lights").
 
+#include "place.h"
 #include "ajar/core/parallel.h"
 #include "ajar/field/probes.h"
 #include "ajar/join/pool.h"
 #include "contribution.h"
+#include "light.h"
 
 namespace ajar {
 namespace {
@@ -19,20 +21,20 @@ struct Group {
 
 // What a light subpath whose last event but one was a delta brings to the lens: camera subpaths could not aim at it.
 // Weights are against s = 0 and s = 1.
-void join_lens(const Job& job, Sampler& sampler, double share, uint32_t path, Scratch& scratch,
+void join_lens(const Job& job, Sampler& sampler, double nee_ratio, uint32_t path, Scratch& scratch,
                std::vector<Splat>& splats) {
   const Subpath& light = scratch.light;
   if (light.n < 3 || !light[light.n - 2].delta || !connectable(light[light.n - 1].guide)) return;
   const Camera& camera = job.scene->camera;
   const Vec2 lens = camera.kind == CameraKind::thinlens ? sampler.next2() : Vec2(0);
   Candidate c;
-  if (!join_camera(*job.scene, lens, light, light.n, share, job.walk.light_paths, c)) return;
+  if (!join_camera(*job.scene, lens, light, light.n, nee_ratio, c)) return;
   ++scratch.counters.shadow_rays;
   if (!is_unblocked(job, c.segment, 1)) return;
-  c.shares.inner = c.shares.seen = 0;
+  const SampleCounts unjoined{.light_paths = job.walk.counts.light_paths, .inner = 0, .seen = 0};
   // The film takes as many light subpaths as it has pixels.
   const double pixels = double(camera.crop_width) * camera.crop_height;
-  c.value *= float(weight(job.walk.heuristic, c) * pixels / job.walk.light_paths);
+  c.value *= float(weight(job.walk.heuristic, c, unjoined) * pixels / unjoined.light_paths);
   if (accept(c.value, path, scratch)) splats.push_back({c.raster, c.value});
 }
 
@@ -51,12 +53,12 @@ void trace_lights(const Job& job, Sampler sampler, uint32_t path, Scratch& scrat
     ++scratch.counters.light_paths;
     Surface surface;
     while (follow_light(job, sampler, scratch, walk, surface)) {
-      join_lens(job, sampler, walk.first_share, path, scratch, out.splats);
+      join_lens(job, sampler, walk.v1, path, scratch, out.splats);
       out.may_light.push_back(can_light(*job.scene, surface, light[light.n - 1].guide));
     }
   }
   const size_t before = scratch.traced.entries.size();
-  add(scratch.traced, light, walk.first_share);
+  add(scratch.traced, light, walk.v1);
   std::vector<LightStore::Entry>& entries = scratch.traced.entries;
   const auto is_none = [&](const LightStore::Entry& at) { return !out.may_light[size_t(at.s)] && !at.only_joined; };
   entries.erase(std::remove_if(entries.begin() + ptrdiff_t(before), entries.end(), is_none), entries.end());
@@ -167,7 +169,7 @@ void trace_vpls(const Job& job, const Film& film, uint32_t pass, std::vector<Scr
     const auto per_light = [&] { return inv_pi / std::max(most_density(job, vpls.store.vertex(at)), 1e-30); };
     near.push_back(at.only_joined ? 0 : float(per_light()));
   }
-  finish(vpls.store, near);
+  lay_blocks(vpls.store, near);
 }
 
 // What was traced does not count: it is in no image, or was counted before.

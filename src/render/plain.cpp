@@ -6,7 +6,9 @@
 #include "ajar/core/parallel.h"
 #include "ajar/render/render.h"
 #include "chunk.h"
+#include "integrators.h"
 #include "job.h"
+#include "takeover.h"
 
 namespace ajar {
 namespace {
@@ -14,8 +16,8 @@ namespace {
 constexpr uint32_t first_look = 4, last_look = 64;  // passes
 constexpr uint32_t least_squares = 32, most_squares = 128;
 constexpr double fastest = 16;  // of path tracing: passes for one of the guided integrator
-// Quotients below which path tracing takes over: what guides errs a little less with every pass to come, and a first look
-// misses what is rare.
+// Quotients below which path tracing takes over: what guides errs a little less with every pass to come, and a first
+// look misses what is rare.
 double little(uint32_t passes) { return passes == first_look ? 0.25 : 0.8; }
 // Quotients above which it is not looked at again, after so many passes: what guides errs less with every pass.
 double too_much(uint32_t passes) { return passes == first_look ? 8 : passes < 16 ? 2 : passes < 32 ? 1.4 : 1.1; }
@@ -73,13 +75,12 @@ uint32_t pixel_of(const Film& film, uint32_t first, uint32_t k) {
 // Path tracing of the passes that are not there yet.
 void trace_to(uint32_t passes, const Job& job, const Film& film, const std::vector<uint32_t>& squares,
               std::vector<Scratch>& scratches, Plain& plain) {
-  Film at;  // the numbers of a pass, without an image
-  at.x0 = film.x0, at.y0 = film.y0, at.width = film.width, at.height = film.height, at.filter = film.filter;
+  Film at = frame_of(film);  // the numbers of a pass, without an image
   at.dropped = film.dropped;
-  std::vector<Splat> none;
+  std::vector<Splat> no_splats;
   std::vector<Ledger> ledgers(scratches.size());
   for (size_t i = 0; i < scratches.size(); ++i) {
-    scratches[i].splats = &none, scratches[i].strategies = nullptr;
+    scratches[i].splats = &no_splats, scratches[i].strategies = nullptr;
     scratches[i].ledger = &ledgers[i];
   }
   plain.seen.sum.resize(squares.size() * plain_pixels), plain.seen.half.resize(squares.size() * plain_pixels);
@@ -203,7 +204,7 @@ Job plainly(Job job) {
   job.trace = trace_path, job.light_half = nullptr;
   job.beyond = nullptr;
   job.guided = false, job.learning = nullptr, job.training = nullptr;
-  job.walk.fields = nullptr, job.walk.merging = {}, job.walk.inner_share = job.walk.seen_share = 0;
+  job.walk.fields = nullptr, job.walk.merging = {}, job.walk.counts.inner = job.walk.counts.seen = 0;
   return job;
 }
 

@@ -12,10 +12,15 @@
 #include "chunk.h"
 #include "integrators.h"
 #include "pass.h"
+#include "place.h"
 #include "start.h"
+#include "takeover.h"
 
 namespace ajar {
 namespace {
+
+// Of a time limit: what passes that only train may take.
+constexpr double training_share = 0.5;
 
 // What threads trace with, kept from batch to batch.
 struct Workshop {
@@ -44,7 +49,7 @@ bool is_finished(const RenderOptions& options, const Job& job, const RenderState
   if (const uint32_t most = most_passes(options); most > 0 && film.passes >= most) return true;
   // No pass of a few pixels is left over.
   return is_quiet(options, film) || stays_black(options, *job.scene, film) ||
-         (share_of(job, film) == 1 && is_over(options, state.stats, 1));
+         (traced_one_in(job, film) == 1 && is_over(options, state.stats, 1));
 }
 
 // What fields know of the scene before anything is traced.
@@ -158,6 +163,7 @@ void render(const Scene& scene, const Accel& accel, const RenderOptions& options
       if (goes_on) trace_next(job, options, shop, state);
     });
     read_clock();
+    if (is_over(options, state.stats, training_share)) end_training(state.learning);
     goes_on = goes_on && (!monitor || monitor(state));
     watch = {};  // who watches, measuring errors perhaps, does so on his own time
   }

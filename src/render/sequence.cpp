@@ -5,7 +5,7 @@
 #include "ajar/accel/sight.h"
 #include "ajar/core/bytes.h"
 #include "ajar/core/error.h"
-#include "bdpt.h"
+#include "ajar/field/guide.h"
 
 namespace ajar {
 namespace {
@@ -107,7 +107,7 @@ std::optional<Fields> teach(const Scene& scene, const Accel& accel, const Render
     }
     state = start_render(scene, teaching);  // as if nothing were known
   }
-  const uint32_t last = sequence.begin - young_generations;
+  const uint32_t last = std::max(sequence.begin, young_generations + 1) - young_generations;
   if (!give_lessons(scene, accel, teaching, young_generations, 1, state, monitor)) return {};
   if (!is_over(options, state.stats, teaching_share) && !give_lessons(scene, accel, teaching, 1, last, state, monitor))
     return {};

@@ -62,9 +62,8 @@ void check_state(const Scene& scene, const RenderOptions& options, const RenderS
         "render: the state's fields were changed by hand, and its training is of others; go_on_from and start_with "
         "bring fields into a state");
   if (!options.next_event && (integrator.splats || integrator.light_half))
-    throw Error(
-        fmt::format("render: {} needs next-event estimation; leave next_event true, or take path or guided-path",
-                    options.integrator));
+    throw Error(fmt::format("render: next_event false is for path and guided-path; {} finds light in more ways",
+                            options.integrator));
 }
 
 Job make_job(const Scene& scene, const Accel& accel, const RenderOptions& options, RenderState& state) {
@@ -80,7 +79,7 @@ Job make_job(const Scene& scene, const Accel& accel, const RenderOptions& option
   job.techniques = options.techniques;
   job.next_event = options.next_event;
   job.trace = integrator.trace, job.light_half = integrator.light_half;
-  job.merges_alone = integrator.trace == trace_photon;
+  job.merges_alone = integrator.merges && !integrator.weighs;
   if (job.merges_alone) job.final_gather = options.final_gather;
   if (learns(options)) {
     job.learning = &state.learning, job.training = &state.learning.training;
@@ -88,9 +87,10 @@ Job make_job(const Scene& scene, const Accel& accel, const RenderOptions& option
   }
   if (integrator.guided) {
     job.guided = true;
-    job.walk.inner_share = integrator.splats ? guided_joins : 0;
-    job.walk.seen_share = job.walk.inner_share;  // more where they choose among many, see plan_light
-    job.walk.first_seen = guided_first;
+    SampleCounts& counts = job.walk.counts;
+    counts.inner = integrator.splats ? guided_joins : 0;
+    counts.seen = counts.inner;  // more where they choose among many, see plan_light
+    counts.first_seen = guided_first;
   }
   return job;
 }

@@ -4,6 +4,8 @@
 // (docs/method.md, "Virtual point lights").
 
 #include "contribution.h"
+#include "integrators.h"
+#include "place.h"
 
 namespace ajar {
 namespace {
@@ -18,19 +20,20 @@ bool is_caustic(const Subpath& camera, int n) {
   return n > 3 && !camera[1].delta && camera[2].delta && connectable(camera[1].guide);
 }
 
+// Hits and next-event estimation alone.
+constexpr SampleCounts unjoined{.light_paths = 0, .inner = 0, .seen = 0};
+
 // Of hits and next-event estimation among each other, and of what only light subpaths can aim at: nothing else finds
 // what they find.
 float weigh_unjoined(const Work& work, Candidate& c) {
-  c.shares.inner = c.shares.seen = 0;
   if (!is_caustic(work.scratch.camera, c.camera.n)) c.camera.sum_before = 0;
-  return float(weight(work.job.walk.heuristic, c));
+  return float(weight(work.job.walk.heuristic, c, unjoined));
 }
 
 // The same of a path that is joined further up: what is left to all that joins and walks share.
 float share_of_camera(const Work& work, Candidate& c) {
   if (!is_caustic(work.scratch.camera, c.camera.n)) return 1;
-  c.shares.inner = c.shares.seen = 0;
-  return float(mis_of_camera(work.job.walk.heuristic, c.light, c.camera, c.shares));  // (I3)
+  return float(mis_of_camera(work.job.walk.heuristic, c.light, c.camera, c.nee, unjoined));  // (I3)
 }
 
 bool is_free(Work& work, Candidate& c, int s, int t) {
@@ -104,7 +107,7 @@ void join_next_event(Work& work) {
   LightNumbers u;
   if (job.scene->lights.empty()) return;
   if (draw_light(*job.scene, v.guide, work.sample.sampler, u) &&
-      join_light(*job.scene, job.walk.fields, camera, camera.n, chances, u, 0, c) && is_free(work, c, 1, camera.n))
+      join_light(*job.scene, job.walk.fields, camera, camera.n, chances, u, c) && is_free(work, c, 1, camera.n))
     add(work, c, weigh_unjoined(work, c), 1, camera.n);
   charge_join(work.scratch, 1, camera.n);
 }
@@ -127,7 +130,7 @@ void join_vpls(Work& work) {
   for (const StoreChoice& choice : scratch.choices) {
     const LightStore::Entry& at = *choice.entry;
     Candidate c;
-    const bool seen = join_vertices(store.end(at), camera.first(camera.n), 0, c) && is_free(work, c, at.s, camera.n);
+    const bool seen = join_vertices(store.end(at), camera.first(camera.n), c) && is_free(work, c, at.s, camera.n);
     if (visibility) learn(*visibility, uint32_t(&at - store.entries.data()), seen);
     if (seen) {
       const double share = share_at(job, at, camera[camera.n - 1].p, c.light.other);
@@ -153,7 +156,7 @@ void walk_on(Work& work, Walk& walk) {
   do {
     ++scratch.counters.camera_rays;
     const bool hit = step(*job.scene, *job.accel, job.vpls->camera, camera, walk, surface);
-    charge(scratch, scratch.ledger->camera_ticks);
+    charge(scratch, &Ledger::camera_ticks);
     if (!hit) {
       Candidate c;
       for (const uint32_t light : job.scene->infinite_lights)
@@ -172,7 +175,7 @@ void walk_on(Work& work, Walk& walk) {
     join_vpls(work);
   } while (camera.n <= job.walk.max_edges && scatter(job.vpls->camera, sample.sampler, camera, walk) &&
            (walked || camera[camera.n - 1].delta));
-  charge(scratch, scratch.ledger->camera_ticks);
+  charge(scratch, &Ledger::camera_ticks);
 }
 
 // So often camera subpaths are followed from a glass or mirror that the lens sees: what they find by chance is bright.

@@ -21,7 +21,7 @@ struct Lobe {
 };
 constexpr Lobe achromatic{1, 0.0047}, red_green{1, 0.0053}, blue_yellow[2] = {{34.1, 0.04}, {13.5, 0.025}};
 
-/// Linear sRGB to XYZ divided by that of white (D65), and back. Both pipelines need XYZ in these units only.
+/// Linear sRGB to XYZ divided by that of its white, D65, and back. Both pipelines need XYZ in these units only.
 struct ColourSpace {
   dmat3 to_xyz, to_rgb;
 };

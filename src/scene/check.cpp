@@ -102,6 +102,7 @@ void check_materials(const Scene& scene) {
     for (const auto& [name, slot] : other_slots) check_slot(scene, part, name, m.*slot, false);
     for (const uint32_t nested : m.nested)
       if (nested != none) check_index(part, "nested material", nested, scene.materials, "materials");
+    if (m.ior <= 0) refuse(part, fmt::format("its ior is {}; give it more than 0", m.ior));
     if (!is_finite(m.eta) || !is_finite(m.k) || !std::isfinite(m.ior + m.map_scale))
       refuse(part, "its eta, k, ior or map_scale is not finite; give it numbers");
     for (const float w : m.weights)
@@ -127,11 +128,24 @@ uint32_t largest_index(const std::vector<glm::uvec3>& triangles) {
       [](uint32_t a, uint32_t b) { return std::max(a, b); });
 }
 
+// Not finite where one of them is not.
+Vec3 sum_of(const std::vector<Vec3>& positions) {
+  return reduce(
+      positions.size(), Vec3(0),
+      [&](size_t from, size_t to) {
+        Vec3 sum(0);
+        for (size_t i = from; i < to; ++i) sum += glm::abs(positions[i]) * 1e-10f;
+        return sum;
+      },
+      [](const Vec3& a, const Vec3& b) { return a + b; });
+}
+
 void check_mesh(const Named& part, const Mesh& mesh) {
   const size_t vertices = mesh.positions.size();
   check_length(part, "normals", mesh.normals.size(), vertices, "positions");
   check_length(part, "uvs", mesh.uvs.size(), vertices, "positions");
   check_length(part, "colors", mesh.colors.size(), vertices, "positions");
+  if (!is_finite(sum_of(mesh.positions))) refuse(part, "one of its positions is not finite, or beyond measure");
   for (const Attribute& a : mesh.attributes)
     check_length(part, fmt::format("values of its attribute \"{}\"", a.name), a.values.size(),
                  a.of_faces ? mesh.triangles.size() : vertices, a.of_faces ? "triangles" : "positions");
@@ -142,9 +156,32 @@ void check_mesh(const Named& part, const Mesh& mesh) {
                                vertices));
 }
 
+bool all_finite(const Mat4& m) {
+  return is_finite(Vec3(m[0])) && is_finite(Vec3(m[1])) && is_finite(Vec3(m[2])) && is_finite(Vec3(m[3]));
+}
+
+// Rays begin and end there: beyond, the ray tracer's squares of distances are no numbers.
+bool is_near(const Vec3& p) { return max_abs(p) <= 1e18f; }
+
+void check_camera(const Camera& c) {
+  const auto refuse_camera = [](const char* what) { throw Error(fmt::format("scene: its camera {}", what)); };
+  if (c.width < 1 || c.height < 1) refuse_camera("has less than a pixel; set its width and height");
+  if (c.crop_width < 1 || c.crop_height < 1 || c.crop_x < 0 || c.crop_y < 0 || c.crop_width > c.width - c.crop_x ||
+      c.crop_height > c.height - c.crop_y)
+    refuse_camera("has a crop window that is not inside its film");
+  if (!all_finite(c.to_world) || !all_finite(c.to_camera))
+    refuse_camera("looks nowhere; give it a target apart from its eye, and a to_world that can be inverted");
+  if (!is_near(Vec3(c.to_world[3]))) refuse_camera("stands farther than 1e18 units away");
+  if (!(std::min(c.plane.x, c.plane.y) > 0 && std::max(c.plane.x, c.plane.y) < infinity))
+    refuse_camera("has no view; give it a field of view between 0 and 180 degrees");
+  if (!(c.aperture >= 0 && c.aperture < infinity && c.focus > 0 && c.focus < infinity))
+    refuse_camera("has a lens that is none; give it an aperture of 0 or more, and a focus beyond 0");
+}
+
 void check_shape(const Scene& scene, uint32_t id) {
   const Shape& s = scene.shapes[id];
   const Named part{"shape", id};
+  if (s.kind != ShapeKind::mesh && !all_finite(s.to_world)) refuse(part, "its to_world is not finite; give it numbers");
   if (s.kind == ShapeKind::mesh) check_index(part, "mesh", s.mesh, scene.meshes, "meshes");
   check_index(part, "material", s.material, scene.materials, "materials");
   if (s.mask != none) check_index(part, "mask", s.mask, scene.materials, "materials");
@@ -163,6 +200,8 @@ void check_light(const Scene& scene, uint32_t id) {
   check_slot(scene, part, "radiance", light.radiance, true);
   if (!(light.sampling_weight >= 0 && light.sampling_weight < infinity))
     refuse(part, fmt::format("its sampling_weight is {}; give it 0 or more", light.sampling_weight));
+  if (!is_near(light.position)) refuse(part, "stands farther than 1e18 units away");
+  if (!is_finite(light.direction) || light.direction == Vec3(0)) refuse(part, "its direction is none");
   if (light.kind == LightKind::area) {
     check_index(part, "shape", light.shape, scene.shapes, "shapes");
     if (scene.shapes[light.shape].light != id)
@@ -179,6 +218,7 @@ void check_light(const Scene& scene, uint32_t id) {
 }  // namespace
 
 void check_parts(const Scene& scene) {
+  check_camera(scene.camera);
   check_textures(scene);
   check_materials(scene);
   for (size_t i = 0; i < scene.meshes.size(); ++i) check_mesh({"mesh", i}, scene.meshes[i]);

@@ -1,8 +1,11 @@
 // The scenes of build.h.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "ajar/core/error.h"
 #include "ajar/core/sampler.h"
 #include "ajar/scene/build.h"
 
@@ -154,6 +157,8 @@ Scene inside_sphere(const Rgb& radiance, int size) {
 }
 
 Scene two_rooms(float door_degrees, int height) {
+  if (!(door_degrees >= 0 && door_degrees <= 120))
+    throw Error(fmt::format("two_rooms: the door at {} degrees; it opens from 0 to 120", door_degrees));
   Scene scene = begin();
   set_camera(scene, {1, 1.4f, 3.7f}, {2.3f, 1, 0}, 60, height * 16 / 9, height);
   const uint32_t near_wall = add_diffuse(scene, {0.75f, 0.72f, 0.68f}),

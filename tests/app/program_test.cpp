@@ -77,6 +77,13 @@ TEST_F(Program, WhatIsStoppedEarlyReplacesNoEarlierWork) {
   EXPECT_NE(said().find("; a.exr has what was done; ck is left as it was\n"), std::string::npos) << said();
   EXPECT_FALSE(kit::bytes_of(folder / "a.exr") == image);
   EXPECT_TRUE(kit::bytes_of(folder / "ck") == state);
+  const std::string log = kit::bytes_of(folder / "log");
+  EXPECT_EQ(run(stopped(large + " --log log", "said", "INT")), 130) << said();
+  EXPECT_NE(said().find("; a.exr, ck and log are left as they were\n"), std::string::npos) << said();
+  EXPECT_TRUE(kit::bytes_of(folder / "log") == log);
+  ASSERT_GT(log.size(), 0u);
+  ASSERT_EQ(run("\"$ajar\" render box.xml --integrator bdpt -o b.exr --spp 4 --log log" + small), 0) << said();
+  EXPECT_LT(kit::bytes_of(folder / "log").size(), log.size()) << "begun anew";
   fs::remove(folder / "log");
   EXPECT_EQ(run(stopped(render + "--resume ck --spp 1000000000 --log log" + small, "log", "INT")), 130) << said();
   EXPECT_FALSE(kit::bytes_of(folder / "ck") == state) << "which it goes on from";

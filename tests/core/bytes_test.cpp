@@ -46,6 +46,8 @@ TEST(Keys, DifferInParts) {
   EXPECT_EQ(difference("1,box.xml,sum 12,seed 1", "1,box.xml,sum 13,seed 1"), "there sum 12, here sum 13");
   EXPECT_EQ(difference("1,a,b,c", "1,x,b,y"), "there a,b,c, here x,b,y");
   EXPECT_EQ(difference("ab", "b"), "there ab, here b");
+  EXPECT_EQ(difference("{a,b}", "{a,c}"), "there b, here c");
+  EXPECT_EQ(difference("{a,b}", "{a,b,c}"), "there b, here b,c");
   EXPECT_EQ(difference("a\x1b"
                        "\x01"
                        "b",

@@ -19,6 +19,13 @@ Vec3 centre_of_cube(const CellTable& t, int x, int y, int z) {
   return t.origin + t.width * (float(t.first) + Vec3(float(x), float(y), float(z)) + 0.5f);
 }
 
+TEST(Cells, NoneAreKnownWhereNothingIsLearned) {
+  for (const Vec3& p : {Vec3(0.3f, 0.5f, 0.2f), Vec3(-1), Vec3(0), Vec3(0, 1, -2), Vec3(1e18f)}) {
+    EXPECT_EQ(find(CellTable{}, p, north).cell, none);
+    EXPECT_EQ(find(CellTable{}, p, north).missing, 0u);
+  }
+}
+
 TEST(Cells, JitterWithinACellDoesNotMatter) {
   const CellTable t = table();
   const Vec3 centre = centre_of_cube(t, 3, 4, 5);

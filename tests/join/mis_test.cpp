@@ -66,23 +66,19 @@ std::vector<double> fast_weights(const OraclePath& path, Heuristic h) {
   const int n = int(path.vertices.size());
   const SideView light = view(path, Side::light, h), camera = view(path, Side::camera, h);
   const auto possible = kit::densities(path);
-  const Shares shares{double(path.nee / path.vertices[0].light),
-                      double(path.light_paths),
-                      double(path.inner),
-                      double(path.seen),
-                      double(path.merge_inner),
-                      double(path.first_seen),
-                      double(path.next_events)};
+  const NextEvent nee{double(path.nee / path.vertices[0].light), double(path.next_events)};
+  const SampleCounts counts{double(path.light_paths), double(path.inner), double(path.seen), double(path.first_seen),
+                            double(path.merge_inner)};
   std::vector<double> out(2 * size_t(n), 0.0);
   for (int s = 0; s < n; ++s)
-    if (possible[size_t(s)] > 0) out[size_t(s)] = mis_weight(h, end_of(light, s), end_of(camera, n - s), shares);
+    if (possible[size_t(s)] > 0) out[size_t(s)] = mis_weight(h, end_of(light, s), end_of(camera, n - s), nee, counts);
   for (int j = 1; j < n - 1; ++j) {
     if (!(possible[size_t(n + j)] > 0)) continue;
     // The densities of the vertices before come last, once both directions at the merge are known.
     End l = end_of(light, j + 1), c = end_of(camera, n - j);
-    MergeSide a = merge_side(h, l, 1, shares, Side::light);
-    const MergeSide b = merge_side(h, c, 1, shares, Side::camera);
-    if (c.seen) a.fixed *= seen_factor(h, shares, l.n);
+    MergeSide a = merge_side(h, l, 1, nee.ratio, counts);
+    const MergeSide b = merge_side(h, c, 1, counts.light_paths, counts);
+    if (c.seen) a.fixed *= seen_factor(h, counts, l.n);
     out[size_t(n + j)] = merge_weight(h, c.merge, a, l.other_before, b, c.other_before);
   }
   return out;
@@ -165,7 +161,7 @@ TEST(Mis, StaysANumberForZeroAndInfiniteDensities) {
           const double extended = extend(1, raise(h, ratio(other, own)), sum);
           ASSERT_TRUE(extended >= 0) << own << ' ' << other << ' ' << sum;
           const End end{3, own, other, own, other, false, sum};
-          const double w = mis_weight(h, end, end, {1, 1});
+          const double w = mis_weight(h, end, end, {}, {});
           ASSERT_TRUE(w >= 0 && w <= 1) << own << ' ' << other << ' ' << sum;
         }
 }

@@ -106,7 +106,7 @@ TEST(Pool, KeepsWhatJoinsRead) {
     EXPECT_EQ(at.s, other.s);
     EXPECT_EQ(at.own_before, other.own_before);
     EXPECT_EQ(at.delta_before, other.delta_before);
-    EXPECT_EQ(at.share, other.share);
+    EXPECT_EQ(at.nee_ratio, other.nee_ratio);
   }
   EXPECT_GT(of_more, 5u);
 }

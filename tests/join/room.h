@@ -42,7 +42,7 @@ struct Room {
   WalkOptions options;
 
   explicit Room(float scale = 1, bool guided = false) : scene(scaled_stage(scale)), accel(scene) {
-    options.light_paths = 64;
+    options.counts.light_paths = 64;
     if (!guided) return;
     fields = train(scene, accel, 3, 1000);
     fields.views = made_up_views(fields);
@@ -64,10 +64,10 @@ struct Room {
         while (light.n < most_edges && step(scene, accel, options, light, walk, surface) &&
                scatter(options, sampler, light, walk)) {
         }
-      add(out, light, walk.first_share);
+      add(out, light, walk.v1);
     }
     out.entries.resize(std::min(out.entries.size(), most_entries));
-    finish(out);
+    deal_blocks(out);
     return out;
   }
 
@@ -95,7 +95,7 @@ inline std::vector<double> brought(const LightStore& store, const Subpath& camer
   std::vector<double> out;
   for (const LightStore::Entry& at : store.entries) {
     Candidate c;
-    const bool joined = at.s <= most && join_vertices(store.end(at), camera.first(camera.n), 64, c);
+    const bool joined = at.s <= most && join_vertices(store.end(at), camera.first(camera.n), c);
     out.push_back(joined ? double(luminance(c.value)) * (0.5 + double(hash(out.size(), 3) % 1000) / 1000) : 0);
   }
   return out;

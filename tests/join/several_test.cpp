@@ -44,7 +44,7 @@ TEST(LightStore, SeveralStandForAllEntries) {
   const Room room(1, true);
   LightStore store = room.store(64);
   for (size_t i = 0; i < store.entries.size(); ++i) store.entries[i].counts = float(1 + i % 3);
-  finish(store, std::vector<float>(store.entries.size(), 0.1f));
+  lay_blocks(store, std::vector<float>(store.entries.size(), 0.1f));
   expect_several_unbiased(store, room.cameras(12), {});
   Visibility seen;
   start(store, seen);
@@ -59,7 +59,7 @@ TEST(LightStore, SeveralStandForAllEntries) {
 TEST(LightStore, SeveralByWhatRegionsSee) {
   const Room room(1, true);
   LightStore store = room.store(64);
-  finish(store, std::vector<float>(store.entries.size(), 0.1f));
+  lay_blocks(store, std::vector<float>(store.entries.size(), 0.1f));
   const Views& views = room.fields.views;
   ASSERT_GT(views.regions, 3u);
   Expectation all, seen;
@@ -76,7 +76,7 @@ TEST(LightStore, SeveralByWhatRegionsSee) {
 TEST(Visibility, TellsSeenFromHidden) {
   const Room room(1, true);
   LightStore store = room.store(64);
-  finish(store, std::vector<float>(store.entries.size(), 0.1f));
+  lay_blocks(store, std::vector<float>(store.entries.size(), 0.1f));
   Visibility v;
   start(store, v);
   for (int k = 0; k < 20; ++k) learn(v, 3, true), learn(v, 4, false), learn(v, 40, false);
@@ -91,13 +91,13 @@ TEST(Visibility, TellsSeenFromHidden) {
 TEST(LightStore, ChoicesStay) {
   const Room room(1, true);
   LightStore store = room.store(64);
-  finish(store, std::vector<float>(store.entries.size(), 0.1f));
+  lay_blocks(store, std::vector<float>(store.entries.size(), 0.1f));
   const std::vector<Subpath> cameras = room.cameras(12);
   const auto choices_of = [&](uint32_t key, size_t k, float count) {
     LightStore some = store;
     some.entries[2].counts = count;
     if (count > 1) std::reverse(some.entries.begin(), some.entries.end());
-    finish(some, std::vector<float>(some.entries.size(), 0.1f));
+    lay_blocks(some, std::vector<float>(some.entries.size(), 0.1f));
     Expectation sums;
     expect_all(some, end_of(cameras[k]), most_edges, {}, sums);
     std::vector<StoreChoice> choices;

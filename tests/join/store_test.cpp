@@ -54,7 +54,7 @@ TEST(LightStore, StandsForAllEntriesOfWhichSomeCountMore) {
   const LightStore all = room.store(64);
   LightStore some;
   subsample(some, {&all}, 0.4 * double(all.entries.size()), 0.5f);
-  finish(some);
+  deal_blocks(some);
   ASSERT_GT(std::count_if(some.entries.begin(), some.entries.end(), [](const auto& p) { return p.counts > 1.5f; }), 4);
   EXPECT_GT(expect_unbiased(some, room.cameras(12)), 8);
 }
@@ -232,7 +232,7 @@ TEST(LightStore, NothingIsChosenFromNothing) {
   const LightStore empty = room.store(0), full = room.store(64);
   LightStore black;  // subpaths that ended at once
   add(black, {}, 1);
-  finish(black);
+  deal_blocks(black);
   EXPECT_EQ(black.paths, 1u);
   std::vector<StoreChoice> choices;
   const auto chooses = [&](const LightStore& store, const Vertex& c, int most, Sampler& sampler) {
@@ -287,7 +287,7 @@ TEST(LightStore, HoldsNoBlackBacks) {
     finish(scene);
     const Accel accel(scene);
     WalkOptions options;
-    options.light_paths = 64;
+    options.counts.light_paths = 64;
     LightStore store;
     Subpath light;
     for (uint64_t i = 0; i < 64; ++i) {
@@ -316,22 +316,22 @@ TEST(LightStore, JoinsAsTheSubpathItself) {
     }
     const auto weigh = [&](const LightEnd& end) {
       Candidate c;
-      return join_vertices(end, camera.first(camera.n), 64, c) ? weight(Heuristic::power, c) : -1;
+      return join_vertices(end, camera.first(camera.n), c) ? weight(Heuristic::power, c, room.options.counts) : -1;
     };
     const size_t before = store.entries.size();
-    add(store, light, walk.first_share);
+    add(store, light, walk.v1);
     size_t entry = before;
     for (int s = 2; s <= light.n; ++s) {
       if (!connectable(light[s - 1].guide) || !(luminance(light[s - 1].beta) > 0)) continue;
       ASSERT_LT(entry, store.entries.size());
       const LightStore::Entry& at = store.entries[entry++];
       EXPECT_EQ(at.s, s);
-      counts += std::abs(at.share - 1) > 0.1;
-      EXPECT_EQ(weigh(store.end(at)), weigh(light_end(light.first(s), walk.first_share)));
+      counts += std::abs(at.nee_ratio - 1) > 0.1;
+      EXPECT_EQ(weigh(store.end(at)), weigh(light_end(light.first(s), walk.v1)));
     }
     EXPECT_EQ(entry, store.entries.size());
   }
-  EXPECT_GT(counts, 20) << "entries whose share is not 1";
+  EXPECT_GT(counts, 20) << "entries whose ratio is not 1";
 }
 
 }  // namespace

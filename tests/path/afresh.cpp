@@ -65,15 +65,17 @@ double camera_density(const Scene& scene, const WholePath& path, size_t i) {
 
 }  // namespace
 
-OraclePath densities_afresh(const Scene& scene, const WholePath& path, double light_paths, const Merging& merging) {
+OraclePath densities_afresh(const Scene& scene, const WholePath& path, const SampleCounts& counts,
+                            const Merging& merging) {
   OraclePath out;
   const LightPoint& light = path.light;
   for (size_t i = 0; i < path.points.size(); ++i)
     out.vertices.push_back({light_density(scene, path, i), camera_density(scene, path, i),
                             i > 0 && path.points[i].delta, merge_density(merging, path.points[i].p)});
-  out.merge_inner = merging.inner;
+  out.inner = counts.inner, out.seen = counts.seen, out.first_seen = counts.first_seen;
+  out.merge_inner = counts.merge_inner;
   out.hittable = !light.delta_position && !light.delta_direction;
-  out.light_paths = light_paths;
+  out.light_paths = counts.light_paths;
   out.nee = out.vertices[0].light;
   if (path.points.size() < 3) return out;
   const Vec3 wi = towards(path, 1, 0);

@@ -22,6 +22,7 @@ struct WholePath {
   int next_events = 1;  // rays to lights from the vertex after x_0
 };
 
-kit::OraclePath densities_afresh(const Scene& scene, const WholePath& path, double light_paths, const Merging& merging);
+kit::OraclePath densities_afresh(const Scene& scene, const WholePath& path, const SampleCounts& counts,
+                                 const Merging& merging);
 
 }  // namespace ajar

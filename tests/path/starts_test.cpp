@@ -46,10 +46,9 @@ void teach_by_camera(const Scene& scene, const Accel& accel, const Fields& field
         LightChances chances;
         LightNumbers u;
         Candidate c;
-        if (draw_light(scene, v.guide, s, u) && join_light(scene, &fields, path, t, chances, u, 1, c) &&
+        if (draw_light(scene, v.guide, s, u) && join_light(scene, &fields, path, t, chances, u, c) &&
             visible(accel, c.segment))
-          record_start(scene, fields, out, c.point, c.light_found.w, {&v.guide, c.light.own * c.shares.light_first}, 1,
-                       rays);
+          record_start(scene, fields, out, c.point, c.light_found.w, {&v.guide, c.light.own * c.nee.ratio}, 1, rays);
       }
     }
   }

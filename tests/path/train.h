@@ -34,11 +34,11 @@ inline void trace_subpath(const Scene& scene, const Accel& accel, const WalkOpti
       LightChances chances;
       LightNumbers u;
       const bool lit = draw_light(scene, v.guide, other, u) &&
-                       join_light(scene, options.fields, out, out.n, chances, u, 1, c) && visible(accel, c.segment);
+                       join_light(scene, options.fields, out, out.n, chances, u, c) && visible(accel, c.segment);
       record_next_event(scene, v.guide, chances, *training, c.point, lit ? max_component(c.arrives) : 0);
       if (lit && c.point.infinite)
-        record_start(scene, *options.fields, *training, c.point, c.light_found.w,
-                     {&v.guide, c.light.own * c.shares.light_first}, 1, 1);
+        record_start(scene, *options.fields, *training, c.point, c.light_found.w, {&v.guide, c.light.own * c.nee.ratio},
+                     1, 1);
       c = {};
     }
     if (side == Side::camera && scene.shapes[surface.shape].light != none &&

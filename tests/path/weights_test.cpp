@@ -64,22 +64,20 @@ Way way_of(int s, int t) {
 struct Tally {
   Heuristic heuristic = Heuristic::power;
   const Fields* fields = nullptr;
-  double light_paths = 333;
+  SampleCounts counts{.light_paths = 333};
   Merging merging;
-  double seen = 1, first_seen = 1;
   int compared[ways] = {}, off[ways] = {};
   double worst[ways] = {};
 
   void compare(const Scene& scene, Candidate& c, const WholePath& path, int s) {
-    c.shares.merge_inner = merging.inner, c.shares.seen = seen, c.shares.first_seen = first_seen;
-    compare(scene, weight(heuristic, c), path, size_t(s), way_of(s, int(path.points.size()) - s));
+    compare(scene, weight(heuristic, c, counts), path, size_t(s), way_of(s, int(path.points.size()) - s));
   }
 
   // which: of the oracle's strategies.
   void compare(const Scene& scene, double fast, WholePath path, size_t which, Way kind) {
     path.fields = fields;
-    OraclePath slow = densities_afresh(scene, path, light_paths, merging);
-    slow.seen = seen, slow.first_seen = first_seen, slow.next_events = path.next_events;
+    OraclePath slow = densities_afresh(scene, path, counts, merging);
+    slow.next_events = path.next_events;
     const double right = double(weights(slow, heuristic == Heuristic::power ? 2 : 1)[which]);
     // Relative, or absolute where the weight hardly counts: float rounding in long chains of densities.
     const double error = std::abs(fast - right) / std::max(right, 1e-4);
@@ -129,7 +127,7 @@ bool reach(const Tracer& tracer, const Traced& light, int s, const Traced& camer
   out.surfaces.resize(size_t(s - 2));
   Walk& walk = out.walk;
   walk = Walk{};
-  walk.side = Side::light, walk.first_share = light.walk.first_share;
+  walk.side = Side::light, walk.v1 = light.walk.v1;
   walk.d = glm::normalize(c.p - a.p);
   const GuideEval e = evaluate(a.guide, walk.d, Mode::importance);
   if (!(e.pdf > 0) || is_black(e.f_cos)) return false;
@@ -153,16 +151,14 @@ void compare_merges(const Tracer& tracer, const Traced& light, const Traced& cam
       if (!connectable(c.guide) || !connectable(light.path[s - 2].guide)) continue;
       if (!reach(tracer, light, s, camera, t, there)) continue;
       Photons photons;
-      add_photons(photons, there.path, h, 1, there.walk.first_share);
+      add_photons(photons, there.path, h, there.walk.v1, tally.counts);
       if (photons.empty() || photons.back().s != s) continue;
       const Photon& p = photons.back();
       const GuideEval e = evaluate(c.guide, p.wi, Mode::radiance);
       if (is_black(e.f_cos)) continue;
-      Shares shares{1, tally.light_paths};
-      shares.seen = tally.seen, shares.first_seen = tally.first_seen;
       const End end{t, c.own, 0, before.own, 0, before.delta, c.sum, c.merge, c.seen, before.seen};
-      const MergeSide side = merge_side(h, end, c.back, shares, Side::camera);
-      const MergeSide lit{c.seen ? p.fixed * seen_factor(h, shares, s) : p.fixed, p.slope};
+      const MergeSide side = merge_side(h, end, c.back, tally.counts.light_paths, tally.counts);
+      const MergeSide lit{c.seen ? p.fixed * seen_factor(h, tally.counts, s) : p.fixed, p.slope};
       const double fast = merge_weight(h, c.merge, lit, e.pdf, side, e.pdf_reverse);
       const WholePath path = joined(there, s - 1, camera, t);
       WholePath smooth = path;
@@ -173,7 +169,7 @@ void compare_merges(const Tracer& tracer, const Traced& light, const Traced& cam
 
 void compare_all(const Tracer& tracer, Traced& light, Traced& camera, const Vec2& lens, Sampler sampler, Tally& tally) {
   const Scene& scene = tracer.scene;
-  const double n = tally.light_paths, share = light.walk.first_share;
+  const double nee_ratio = light.walk.v1;
   Candidate c;
   for (int t = 2; t <= camera.path.n; ++t) {
     Subpath part = camera.path;
@@ -187,19 +183,18 @@ void compare_all(const Tracer& tracer, Traced& light, Traced& camera, const Vec2
     if (!connectable(last.guide)) continue;
     LightChances chances;
     LightNumbers u;
-    if (draw_light(scene, last.guide, sampler, u) &&
-        join_light(scene, tally.fields, camera.path, t, chances, u, n, c)) {
+    if (draw_light(scene, last.guide, sampler, u) && join_light(scene, tally.fields, camera.path, t, chances, u, c)) {
       DirectSample d;
       ASSERT_TRUE(sample_next_event(scene, last.guide, chances, u, d));
       tally.compare(scene, c, lit(d.point, d.wi, camera, t, false), 1);
     }
     for (int s = 2; s <= light.path.n; ++s)
       if (connectable(light.path[s - 1].guide) &&
-          join_vertices(light_end(light.path.first(s), share), camera.path.first(t), n, c))
+          join_vertices(light_end(light.path.first(s), nee_ratio), camera.path.first(t), c))
         tally.compare(scene, c, joined(light, s, camera, t), s);
   }
   for (int s = 2; s <= light.path.n; ++s)
-    if (connectable(light.path[s - 1].guide) && join_camera(scene, lens, light.path, s, share, n, c)) {
+    if (connectable(light.path[s - 1].guide) && join_camera(scene, lens, light.path, s, nee_ratio, c)) {
       CameraConnection k;
       ASSERT_TRUE(connect(scene.camera, light.path[s - 1].p, lens, scene.filter.radius, k));
       Traced end;
@@ -220,7 +215,7 @@ struct Case {
   Heuristic heuristic = Heuristic::power;
   const Fields* fields = nullptr;
   Merging merging = {};
-  double seen = 1, first_seen = 1;
+  SampleCounts counts = {};  // but for light paths
 };
 
 void expect_oracle(const Scene& scene, int paths, const Case& which) {
@@ -230,10 +225,9 @@ void expect_oracle(const Scene& scene, int paths, const Case& which) {
   Tracer tracer(scene);
   tracer.options.heuristic = which.heuristic;
   tracer.options.fields = which.fields;
-  tracer.options.light_paths = tally.light_paths;
   tracer.options.merging = tally.merging = which.merging;
-  tracer.options.seen_share = tally.seen = which.seen;
-  tally.first_seen = which.first_seen;
+  tally.counts = which.counts, tally.counts.light_paths = 333;
+  tracer.options.counts = tally.counts;
   int compared = 0, vertices = 0, guided = 0;
   for (int i = 0; i < paths; ++i) {
     Sampler c = make_sampler(SamplerKind::independent, 1, Side::camera, uint64_t(i), 0);
@@ -267,9 +261,11 @@ void expect_oracle(const Scene& scene, int paths = 3000) {
     SCOPED_TRACE(heuristic == Heuristic::balance ? "balance" : "power");
     expect_oracle(scene, paths, {heuristic, nullptr});
     SCOPED_TRACE("guided");
-    expect_oracle(scene, paths / 2, {heuristic, &fields, {}, 8, 3});
+    expect_oracle(scene, paths / 2, {heuristic, &fields, {}, {.seen = 8, .first_seen = 3}});
     SCOPED_TRACE("merging");
-    expect_oracle(scene, paths / 3, {heuristic, &fields, {500, {0, 0, 4}, 0.01f, 0, 1, 0.3}, 8, 3});
+    expect_oracle(
+        scene, paths / 3,
+        {heuristic, &fields, {500, {0, 0, 4}, 0.01f, 0, 1}, {.seen = 8, .first_seen = 3, .merge_inner = 0.3}});
   }
 }
 

@@ -29,7 +29,7 @@ TEST(Arrival, KeepsTheMeanAndEndsWhatJoinsBeforeBring) {
   const RenderState state = rendered(scene, accel, options_of("guided-bdpt", 24));
   WalkOptions options;
   options.fields = &state.learning.fields;
-  options.inner_share = 2, options.seen_share = 1000, options.light_paths = 500;
+  options.counts = {.light_paths = 500, .inner = 2, .seen = 1000};
   WalkOptions easier = options;
   easier.goes_on = Balance::most;
   int ended[9] = {}, tried[9] = {}, saved = 0;

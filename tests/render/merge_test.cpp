@@ -34,6 +34,12 @@ Picture render_once(const Scene& scene, const RenderOptions& o) {
   return develop(rendered(scene, accel, o).film);
 }
 
+double mean_of_seeds(const Scene& scene, RenderOptions o) {
+  double sum = 0;
+  for (o.seed = 1; o.seed <= 3; ++o.seed) sum += mean(render_once(scene, o)) / 3;
+  return sum;
+}
+
 TEST(Merging, OffIsGuidedBdpt) {
   const Scene scene = cornell(40);
   const Picture off = render_once(scene, with_radius("guided-vcm", 0, 10));
@@ -95,14 +101,44 @@ Scene masonry(int size) {
 }
 
 TEST(Merging, KeepsTheEnergyBetweenSolids) {
-  const Scene scene = masonry(64);
-  double sum = 0;
-  for (const uint64_t seed : {1, 2, 3}) {
-    RenderOptions o = with_radius("photon", 3, 24);
-    o.seed = seed;
-    sum += mean(render_once(scene, o)) / 3;
+  EXPECT_NEAR(mean_of_seeds(masonry(64), with_radius("photon", 3, 24)), 2, 0.02);
+}
+
+// A wide floor under an even sky of 1; the camera sees the middle half of it.
+Scene floor(Scene scene, uint32_t material) {
+  scene.filter = make_filter(FilterKind::box);
+  add_quad(scene, {-4, 0, 4}, {8, 0, 0}, {0, 0, -8}, material);
+  add_light(scene, LightKind::constant, Rgb(1));
+  set_camera(scene, {0, 3, 0}, {0, 0, 0}, 67.4f, 32, 32);
+  finish(scene);
+  return scene;
+}
+
+// What keeps no light vertices is no part of the disc: nothing beside black tiles, mirrors and panes is dark for it.
+TEST(Merging, KeepsTheEnergyBesideWhatIsBare) {
+  for (const MaterialKind kind : {MaterialKind::diffuse, MaterialKind::conductor, MaterialKind::thindielectric}) {
+    Scene scene;
+    Material bare;
+    bare.kind = kind, bare.reflectance = bare.specular = bare.transmittance = Slot(0.0f);
+    Material tiles;
+    tiles.kind = MaterialKind::blend;
+    tiles.weight = add_checkerboard(scene, Rgb(0), Rgb(1));
+    tiles.nested = {add_diffuse(scene, Rgb(0.6f)), add_material(scene, bare), none, none};
+    const uint32_t material = add_material(scene, tiles);
+    EXPECT_NEAR(mean_of_seeds(floor(std::move(scene), material), with_radius("photon", 3, 256)), 0.3, 0.006)
+        << int(kind);
   }
-  EXPECT_NEAR(sum, 2, 0.02);
+}
+
+// Nor what lies under a pane that does nothing, so near that darts begin above it. Discs are small there, and few light
+// vertices in them.
+TEST(Merging, KeepsTheEnergyUnderPanes) {
+  Scene scene;
+  Material pane;
+  pane.kind = MaterialKind::thindielectric, pane.ior = 1.00001f;
+  add_quad(scene, {-4, 0.002f, 4}, {8, 0, 0}, {0, 0, -8}, add_material(scene, pane));
+  const uint32_t matt = add_diffuse(scene, Rgb(0.6f));
+  EXPECT_NEAR(mean_of_seeds(floor(std::move(scene), matt), with_radius("photon", 3, 256)), 0.6, 0.1);
 }
 
 // The mean over blocks, where what merging blurs stays in its block, is that of bdpt once the radius is small.

@@ -65,9 +65,20 @@ TEST(Build, what_does_not_fit_is_an_error) {
   expect("material 0: its specular is negative", [](Scene& s) { s.materials[0].specular = Slot(-0.5f); });
   expect("material 0: its roughness is not finite", [](Scene& s) { s.materials[0].roughness = Slot(infinity); });
   expect("material 0: its eta, k, ior or map_scale", [&](Scene& s) { s.materials[0].ior = nan; });
+  expect("material 0: its ior is -1.5; give it more than 0", [](Scene& s) { s.materials[0].ior = -1.5f; });
   expect("material 0: one of its weights is -1", [](Scene& s) { s.materials[0].weights[1] = -1; });
   expect("material 0: its nested material is 4", [](Scene& s) { s.materials[0].nested[0] = 4; });
   expect("mesh 0: its triangle 2 has a corner", [](Scene& s) { s.meshes[0].triangles[2].y = 1000; });
+  expect("mesh 0: one of its positions is not finite", [&](Scene& s) { s.meshes[0].positions[1].z = nan; });
+  expect("shape 1: its to_world is not finite", [&](Scene& s) { add_sphere(s, Vec3(nan), 1, 0); });
+  expect("light 1: stands farther than 1e18", [](Scene& s) {
+    add_light(s, LightKind::point, Slot(1.0f));
+    s.lights[1].position.x = 1e19f;
+  });
+  expect("light 1: its direction is none", [&](Scene& s) {
+    add_light(s, LightKind::directional, Slot(1.0f));
+    s.lights[1].direction.y = nan;
+  });
   expect("mesh 0: has 1 normals and", [](Scene& s) { s.meshes[0].normals = {{0, 0, 1}}; });
   expect("mesh 0: has 1 uvs and", [](Scene& s) { s.meshes[0].uvs = {{0, 0}}; });
   expect("mesh 0: has 2 colors and", [](Scene& s) { s.meshes[0].colors.resize(2); });
@@ -90,6 +101,34 @@ TEST(Build, what_does_not_fit_is_an_error) {
     add_image(s, 2, 2, std::vector<float>(12));
     s.images[0].alpha.resize(3);
   });
+}
+
+TEST(Build, cameras_that_cannot_be_are_errors) {
+  const auto expect = [](const char* words, const std::function<void(Scene&)>& change) {
+    const std::string said = refusal(change);
+    EXPECT_NE(said.find(words), std::string::npos) << words << ": " << said;
+  };
+  const auto set = [](const Vec3& eye, const Vec3& target, float fov) {
+    return [=](Scene& s) { set_camera(s, eye, target, fov, 8, 8); };
+  };
+  EXPECT_EQ(refusal(set({0, 0, 3}, {0, 0, 0}, 179)), "");
+  expect("camera looks nowhere", set({1, 2, 3}, {1, 2, 3}, 40));
+  expect("camera looks nowhere", set({std::nanf(""), 0, 3}, {0, 0, 0}, 40));
+  expect("camera looks nowhere", [](Scene& s) { set_perspective(s.camera, 40, Mat4(0)); });
+  expect("camera stands farther than 1e18", [](Scene& s) { s.camera.to_world[3].y = 1e19f; });
+  for (const float fov : {0.0f, -5.0f, 200.0f, 360.0f, infinity, std::nanf("")})
+    expect("camera has no view", set({0, 0, 3}, {0, 0, 0}, fov));
+  expect("camera has a lens that is none", [](Scene& s) { s.camera.focus = 0; });
+  expect("camera has a lens that is none", [](Scene& s) { s.camera.aperture = std::nanf(""); });
+  expect("camera has less than a pixel", [](Scene& s) { s.camera.width = 0; });
+  expect("crop window that is not inside", [](Scene& s) { s.camera.crop_x = 1; });
+  expect("crop window that is not inside", [](Scene& s) { s.camera.crop_height = 0; });
+}
+
+TEST(Build, doors_open_so_far) {
+  EXPECT_THROW(two_rooms(121), Error);
+  EXPECT_THROW(two_rooms(-1), Error);
+  EXPECT_NO_THROW(two_rooms(120));
 }
 
 TEST(Build, the_camera_is_set_without_a_crop_window) {

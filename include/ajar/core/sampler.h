@@ -2,6 +2,7 @@
 // Leaves: numbers in [0,1), a pure function of those and of the dimension: the same for any number of threads.
 #pragma once
 
+#include "ajar/core/side.h"
 #include "ajar/core/vec.h"
 
 namespace ajar {
@@ -15,7 +16,6 @@ inline uint64_t mix64(uint64_t x) {
 }
 inline uint64_t hash(uint64_t a, uint64_t b) { return mix64(a ^ mix64(b)); }
 
-enum class Side : uint8_t { camera, light };
 enum class SamplerKind : uint8_t { sobol, independent };
 inline constexpr const char* sampler_names[] = {"sobol", "independent"};
 

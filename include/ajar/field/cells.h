@@ -57,7 +57,7 @@ struct CellTable {
   Vec3 origin{0};
   float width = 1;                         ///< edge of the cubes of level 0
   uint32_t first = 0;                      ///< coordinate of the first of the top_cubes, along all axes
-  std::vector<Slot> slots;                 ///< a power of two of them
+  std::vector<Slot> slots;                 ///< a power of two of them; none: nothing is known anywhere
   std::vector<std::array<Part, 8>> parts;  ///< of every divided cell, by octants; the first is nobody's
   std::vector<CellCut> cuts;
   std::vector<int32_t> compartments;  ///< per cube of level 0: its first cut, or ~0; empty: nothing is cut

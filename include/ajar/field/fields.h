@@ -3,14 +3,13 @@
 // subpaths) over cells of the scene's surfaces. Constant while a pass reads them.
 #pragma once
 
+#include "ajar/core/side.h"
 #include "ajar/field/cells.h"
 #include "ajar/field/lights.h"
 #include "ajar/field/strata.h"
 #include "ajar/field/views.h"
 
 namespace ajar {
-
-enum class Side : uint8_t;
 
 /// One field in one cell. Values are means over the cell: luminance of radiance for Q; for W importance, in pixels per
 /// area where radiance is power per area (notation.md).
@@ -84,9 +83,10 @@ struct Fields {
   const Field& of(Side side) const;
 };
 
-// What cell names below is one of the fields', as find gives it: not none.
+// Below, `cell` indexes Fields::cells, and is never none.
 
-/// Where mean and weight of the stratum of a local direction above the cell's horizon are.
+/// Index into Field::mean and Field::weight of the stratum that holds a direction (z > 0) as the cell's centre sees it
+/// (centered).
 size_t find_stratum(const Fields& fields, const Field& field, uint32_t cell, const Vec3& local);
 /// The same of a point of the unit square.
 size_t find_stratum(const Field& field, const FieldCell& cell, Vec2 square);

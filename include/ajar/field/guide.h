@@ -45,7 +45,6 @@ struct GuideSample {
   float pdf_reverse = 0;
   float eta = 1;
   bool delta = false;
-  float survival_probability = 1;  ///< in Russian roulette
 };
 
 /// Resolves the material at the surface for a viewer in direction wo, and finds the cell. fields may be null.
@@ -65,6 +64,17 @@ inline uint32_t region_of(const Guide& guide) {
 }
 /// Radiance that a vertex scatters to any one direction per irradiance, taken as diffuse [1/sr]; luminance.
 inline float scatters(const Guide& guide) { return luminance(albedo(guide.bsdf, guide.wo_local)) * inv_pi; }
+/// Radiance that a vertex of a known cell is expected to scatter, luminance; never less than this share of a typical
+/// value: errors are judged against it.
+inline float expected_radiance(const Fields& fields, const Guide& guide, float least) {
+  const double out = scatters(guide) * fields.q.cells[guide.cell].total;
+  return float(std::sqrt(sqr(out) + sqr(double(least) * fields.q.unit)));
+}
+/// What a pixel's error counts for where the lens sees this vertex: errors are judged relative to the image, so the
+/// lens's importance is divided by what the field expects the pixel to be. (G5)
+inline float relative_importance(const Fields& fields, const Guide& guide) {
+  return float(fields.q.unit) / expected_radiance(fields, guide, 0.02f);
+}
 /// What a subpath of throughput beta that arrives at a vertex is expected to bring, by the field of its side: beta
 /// times the radiance (importance) that the vertex scatters, as luminance. 0 where the fields do not know.
 struct Promise {
@@ -83,8 +93,8 @@ GuideEval evaluate(const Guide& guide, const Vec3& wi, Mode mode);
 GuideEval evaluate_bsdf(const Guide& guide, const Vec3& wi, Mode mode);
 float with_field(const Guide& guide, const Vec3& wi, float bsdf_pdf);
 /// Samples wi, delta events among it, from the mixture of field and bsdf: u_lobe and u in [0, 1), u_lobe read only
-/// where chooses says so. The weight is divided by the density, and may be black; survival_probability is not set.
-/// False where nothing is scattered: then out is not to be read.
+/// where chooses says so. The weight is divided by the density, and may be black. False where nothing is
+/// scattered: then out is not to be read.
 bool sample(const Guide& guide, float u_lobe, const Vec2& u, Mode mode, GuideSample& out);
 
 }  // namespace ajar

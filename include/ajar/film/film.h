@@ -1,5 +1,5 @@
-// Enters: samples of a pass, one per pixel, and splats.
-// Leaves: the running estimate with its variance. A pass is one sample of every pixel, and light subpaths.
+// Enters: what the camera samples of a pass bring each pixel, and splats.
+// Leaves: the running estimate with its variance, pass by pass.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 
 namespace ajar {
 
-/// What a light subpath leaves on the film: value is not yet divided by the number of light subpaths; raster in pixels
-/// of the full image.
+/// What a light subpath leaves on the film: value as if a pass had one light subpath for each pixel, and not yet
+/// divided by their number; raster in pixels of the full image.
 struct Splat {
   Vec2 raster{0};
   Rgb value{0};
@@ -69,6 +69,8 @@ inline double spp_of(const Film& film) { return film.passes + double(film.chunks
 double share_of_pass(const Film& film);
 
 Film make_film(const Camera& camera, const Filter& filter, bool splats);
+/// A film of the same place and filter, without pixels.
+Film frame_of(const Film& film);
 /// Adds the splats of consecutive chunks, in their order, filtered. The result does not depend on threads.
 void merge(Film& film, const std::vector<std::vector<Splat>>& chunks);
 /// Forgets all finished passes: those to come go on with their numbers.

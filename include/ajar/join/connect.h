@@ -26,7 +26,7 @@ struct Candidate {
   Segment segment;  ///< that must be free
   End light, camera;
   Finding light_found, camera_found;  ///< what End::other will be, see complete
-  Shares shares;
+  NextEvent nee;
   LightPoint point;  ///< s = 1: of the light that was asked
   Vec2 raster{0};    ///< t = 1: where it lands
   Rgb arrives{0};    ///< at the last vertex of a subpath, from the light or lens itself: s = 0 radiance, s = 1
@@ -46,31 +46,29 @@ bool join_hit(const Scene& scene, const Fields* fields, const Subpath& camera, c
 /// s = 0: the camera subpath left the scene in the walk's direction; one infinite light.
 bool join_escape(const Scene& scene, const Fields* fields, uint32_t light, const Subpath& camera, const Walk& walk,
                  Candidate& out);
-/// s = 1: next-event estimation at the camera subpath's vertex t - 1, whose chances these are. light_paths as in
-/// WalkOptions, also below.
+/// s = 1: next-event estimation at the camera subpath's vertex t - 1, whose chances these are.
 bool join_light(const Scene& scene, const Fields* fields, const Subpath& camera, int t, LightChances& chances,
-                const LightNumbers& u, double light_paths, Candidate& out);
+                const LightNumbers& u, Candidate& out);
 /// The last vertex of a light subpath, and what joins to it read of the rest.
 struct LightEnd {
   const Vertex* vertex = nullptr;
   int s = 0;  ///< vertices of the subpath, at least 2
   bool delta_before = false;
   double own_before = 1;  ///< Vertex::own of the vertex before
-  double share = 1;       ///< of the walk (walk.h, first_share)
+  double nee_ratio = 1;   ///< of the subpath: Walk::v1
 };
 /// Of a subpath of two vertices or more.
-LightEnd light_end(std::span<const Vertex> light, double share);
+LightEnd light_end(std::span<const Vertex> light, double nee_ratio);
 /// s >= 2, t >= 2: the last vertices of both.
-bool join_vertices(const LightEnd& light, std::span<const Vertex> camera, double light_paths, Candidate& out);
+bool join_vertices(const LightEnd& light, std::span<const Vertex> camera, Candidate& out);
 /// t = 1: the light subpath's vertex s - 1 >= 0 and the lens.
-bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int s, double share, double light_paths,
-                 Candidate& out);
+bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int s, double nee_ratio, Candidate& out);
 
 /// Asks the fields for the densities that are still open.
 void complete(Candidate& c);
-inline double weight(Heuristic h, Candidate& c) {
+inline double weight(Heuristic h, Candidate& c, const SampleCounts& counts) {
   complete(c);
-  return mis_weight(h, c.light, c.camera, c.shares);
+  return mis_weight(h, c.light, c.camera, c.nee, counts);
 }
 
 }  // namespace ajar

@@ -2,7 +2,6 @@
 // Leaves: the weight of the strategy at hand among all (s, t). Pure functions: no scene, no vertex, nothing mutated.
 #pragma once
 
-#include "ajar/core/sampler.h"
 #include "ajar/path/prefix.h"
 
 namespace ajar {
@@ -21,28 +20,22 @@ struct End {
   bool seen = false, seen_before = false;   ///< all events between a_(n-1), or a_(n-2), and the lens are deltas; camera
 };
 
-/// The strategy with one vertex on this side draws its end afresh (next-event estimation), or comes more often (one
-/// light path for every pixel splats to the whole film); its density over that of the subpath's own a_0.
-struct Shares {
-  double light_first = 1;   ///< density of next-event estimation over that of emission for a_0
-  double camera_first = 1;  ///< number of light paths that one camera sample's film sees: light paths of a pass
-  double inner = 1;  ///< what a join of two vertices that both were walked to counts for, as a factor on its density
-  double seen = 1;   ///< the same where the lens sees the camera's vertex, itself or by way of deltas
-  double merge_inner = 1;  ///< what merges beyond the first vertex that the camera sees count for
-  double first_seen = 1;  ///< what next-event estimation counts for where the lens sees its vertex, itself or by way of
-                          ///< deltas, as a factor on light_first
-  double next_events = 1;  ///< rays to lights from the vertex of s = 1, which s = 0 leaves too: these two share what is
-                           ///< theirs as if each ray counted
+/// Next-event estimation's part in a path: it draws the light's point afresh.
+struct NextEvent {
+  double ratio =
+      1;            ///< p_N / p_L: density of next-event estimation over that of emission for a_0 (ratio_of_next_event)
+  double rays = 1;  ///< to lights, from the vertex of s = 1; s = 0 and s = 1 share what is theirs as if each counted
 };
 
 /// Weight of the strategy that joins light (s = light.n >= 0) and camera (t = camera.n >= 1) vertices. For s = 0 the
 /// camera's last vertex lies on a light: camera.other is the emission density there. For s = 1, light.own is the
 /// emission density too.
-double mis_weight(Heuristic h, const End& light, const End& camera, const Shares& shares);
+double mis_weight(Heuristic h, const End& light, const End& camera, const NextEvent& nee, const SampleCounts& counts);
 
-/// Of the strategies that take vertices away from either end of a path of two walked ends, the share of those that take
-/// them from the light's: with inner of 0, what s = 0 and s = 1 count for against t = 1.
-double mis_of_camera(Heuristic h, const End& light, const End& camera, const Shares& shares);
+/// Among the strategies that join a path of two walked ends elsewhere, the share of those with more camera vertices:
+/// with counts.inner of 0, of s = 0 and s = 1 against t = 1.
+double mis_of_camera(Heuristic h, const End& light, const End& camera, const NextEvent& nee,
+                     const SampleCounts& counts);
 
 /// What one side of a merge contributes to the sum over the other strategies, relative to a merge's own density over
 /// its End::merge, while the density of going back is not known yet: fixed + slope * raise(h, density).
@@ -50,13 +43,13 @@ struct MergeSide {
   double fixed = 0, slope = 0;
 };
 /// The side whose last vertex is at the merge. other and other_before of the end are not read; back turns the density
-/// per solid angle of going back into the area density of the vertex before. (K6)
-MergeSide merge_side(Heuristic h, const End& end, double back, const Shares& shares, Side side);
+/// per solid angle of going back into the area density of the vertex before; v1: of the walk, or v_1 of (R2). (K6)
+MergeSide merge_side(Heuristic h, const End& end, double back, double v1, const SampleCounts& counts);
 /// What `fixed` of a light side of n vertices, made for a camera's vertex that the lens does not see, is to be
 /// multiplied by where it does: one of the other strategies joins at it, or next-event estimation starts there.
-inline double seen_factor(Heuristic h, const Shares& shares, int n) {
-  if (n == 2) return raise(h, shares.first_seen);
-  return shares.inner > 0 ? raise(h, shares.seen / shares.inner) : 1;
+inline double seen_factor(Heuristic h, const SampleCounts& counts, int n) {
+  if (n == 2) return raise(h, counts.first_seen);
+  return counts.inner > 0 ? raise(h, counts.seen / counts.inner) : 1;
 }
 /// Weight of the merge; reverse: densities per solid angle of going on to the vertex before on each side. merge is
 /// pi r^2 N times its share.

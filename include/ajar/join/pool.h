@@ -9,8 +9,8 @@ namespace ajar {
 /// Share of a choice among light vertices that goes by flux, whatever the fields say.
 inline constexpr double by_flux = 0.05;
 
-/// The least value that is sure to be kept, so that `count` are in the mean, if each value is with the probability
-/// value / result, at most 1; 0 to keep all.
+/// The threshold c with which keeping each value with the probability min(1, value / c) keeps `count` on average; 0 if
+/// there are no more than `count`. (J2)
 double find_threshold(std::vector<double> values, double count);
 
 /// Along a Morton curve over the places within a radius of a centre, one curve for each of six ranges of normals, so

@@ -18,7 +18,7 @@ struct LightStore {
     int s = 0;                  ///< vertices of its subpath up to this one
     bool delta_before = false;  ///< see LightEnd
     bool only_joined = false;   ///< no walk finds what came here: a caustic of a light without extent
-    double own_before = 1, share = 1;
+    double own_before = 1, nee_ratio = 1;
     uint32_t region = no_region;
     uint32_t path = 0;  ///< number of its subpath
     float counts = 1;   ///< for how many of its kind it stands, where others were left out
@@ -44,11 +44,11 @@ struct LightStore {
   };
   std::vector<Vertex> vertices;
   std::vector<Entry> entries;
-  std::vector<Block> blocks;  ///< of entries as finish() put them
+  std::vector<Block> blocks;  ///< of entries, as deal_blocks or lay_blocks put them
   uint32_t paths = 0;         ///< light subpaths that were tried, those that brought no vertex too
 
   const Vertex& vertex(const Entry& at) const { return vertices[at.vertex]; }
-  LightEnd end(const Entry& at) const { return {&vertex(at), at.s, at.delta_before, at.own_before, at.share}; }
+  LightEnd end(const Entry& at) const { return {&vertex(at), at.s, at.delta_before, at.own_before, at.nee_ratio}; }
 };
 
 /// A camera vertex that is to be joined. What strategies count for is not raised.
@@ -70,14 +70,14 @@ struct StoreChoice {
 };
 
 void clear(LightStore& store);
-/// share: of the walk.
-void add(LightStore& store, const Subpath& light, double share);
+/// nee_ratio: Walk::v1.
+void add(LightStore& store, const Subpath& light, double nee_ratio);
 /// Makes the blocks, when all is added: each an even sample of all entries, entry i in block i % blocks, at i / blocks.
 /// For choose().
-void finish(LightStore& store);
+void deal_blocks(LightStore& store);
 /// Makes blocks of neighbours, with what near of each entry is to be: entry i in block i / width, at i % width. For
 /// expect_all(), choose_some() and learn().
-void finish(LightStore& store, std::span<const float> near);
+void lay_blocks(LightStore& store, std::span<const float> near);
 /// Adds all of another store, before the blocks are made.
 void append(LightStore& store, const LightStore& more);
 /// What entries of a store would bring to one camera vertex.
@@ -86,9 +86,9 @@ struct Expectation {
   std::vector<LightStore::Sums> sums;      ///< of them
   float sum = 0;
 };
-/// Draws from the entries of some blocks in proportion to what they would bring unoccluded times the chance that they
-/// are seen (resampling: Talbot et al. 2005), evenly spaced over their sums: the more of the pixel's light is expected,
-/// the more, in the mean a tenth to 32 (J3). Takes one pair of numbers. expected: storage.
+/// After deal_blocks: draws from the entries of some blocks in proportion to what they would bring unoccluded times the
+/// chance that they are seen (resampling: Talbot et al. 2005), evenly spaced over their sums: the more of the pixel's
+/// light is expected, the more, in the mean a tenth to 32 (J3). Takes one pair of numbers. expected: storage.
 void choose(const LightStore& store, const Joiner& joiner, Sampler& sampler, Expectation& expected,
             std::vector<StoreChoice>& out);
 
@@ -100,7 +100,7 @@ struct Prospect {
   const Views* views = nullptr;
   uint32_t region = no_region;
 };
-/// Of all entries; the store was put in order. most: largest s.
+/// After lay_blocks: of all entries. most: largest s.
 void expect_all(const LightStore& store, const Vertex& camera, int most, const Prospect& known, Expectation& out);
 /// Draws about `count` entries, each on its own (Poisson sampling), in proportion to what is expected of it and at most
 /// once. key: random bits. Whether an entry is drawn depends on its chance and on a hash of key and light vertex alone:

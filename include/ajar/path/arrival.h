@@ -6,8 +6,8 @@
 
 namespace ajar {
 
-/// What all strategies of fewer camera vertices count for, if a light subpath came to the last vertex, as if it
-/// scattered evenly; over the density with which it comes, and not raised.
+/// Sum of what all strategies with fewer camera vertices count for, if a light subpath reached the last vertex and
+/// scattered there as from a matt surface; relative to that subpath's density, and not raised.
 double count_before(const WalkOptions& options, const Subpath& camera);
 /// Roulette at the last vertex, before its joins: false where the subpath ends; else its throughput counts for those
 /// that do. Takes one pair of numbers. (G15)

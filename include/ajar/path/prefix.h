@@ -21,13 +21,24 @@ inline double ratio(double other, double own) {
   return std::isnan(r) ? 0 : largest_ratio;  // zero times infinity, where two vertices are one point
 }
 
+/// How many samples the strategies of one kind take, as factors on their densities; the same for all paths of a pass.
+struct SampleCounts {
+  double light_paths = 1;  ///< t = 1: light subpaths of a pass, each of which may splat to any pixel; with 0, and inner
+                           ///< and seen of 0, weights are of s = 0 and s = 1 alone
+  double inner = 1;        ///< joins of two vertices that both were walked to (J7)
+  double seen = 1;         ///< the same where the lens sees the camera's vertex, itself or by way of deltas (J7)
+  double first_seen = 1;   ///< s = 1 where the lens sees its vertex, itself or by way of deltas (J7)
+  double merge_inner = 1;  ///< merges beyond the first vertex at which a camera subpath is merged (K3)
+};
+
 /// Prefix sum over the strategies that cut a subpath a_0 a_1 .. at or before vertex i (docs/method.md, R2):
 ///   S_i = v_i + r_(i-1) S_(i-1)
-/// with r_j = (density of a_j from the other side / from its own), raised, and v_i the share of the strategy that
-/// connects a_(i-1) to a_i: 0 where either event is a delta, else 1, or the strategy's extra density for i = 1
-/// (next-event estimation, splats). S_0 is 1 where a_0 can be hit by a ray, else 0.
-inline double extend(double share, double raised_ratio, double sum_before) {
-  return share + std::min(largest_ratio * largest_ratio, raised_ratio * sum_before);
+/// with r_j = (density of a_j from the other side / from its own), raised, and v_i what the strategy counts for
+/// that connects a_(i-1) to a_i, raised: 0 where either event is a delta; for i = 1 its density over that of the
+/// subpath's own a_0 (next-event estimation, splats); else how many of its joins there are (J7). S_0 is 1 where a_0 can
+/// be hit by a ray, else 0.
+inline double extend(double v, double raised_ratio, double sum_before) {
+  return v + std::min(largest_ratio * largest_ratio, raised_ratio * sum_before);
 }
 
 /// m_i, what merging at a vertex of this density adds to v_i (K5).

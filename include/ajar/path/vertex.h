@@ -10,8 +10,8 @@
 namespace ajar {
 
 /// A vertex a_i of a subpath. For both sides: "own" is the side that traced it, "before" the vertex nearer to that
-/// side's end. Vertex 0 (the lens, the light's point) uses p, ng, beta, own, delta, infinite, seen (false) and sum
-/// alone, of a light also error and point.
+/// side's end. Vertex 0 (the lens, the light's point) uses p, ng, beta, own, delta, infinite, seen (false), sum
+/// and next_events (1) alone, of a light also error and point.
 struct Vertex {
   Vec3 p{0};
   float error = 0;      ///< offset for rays that leave here
@@ -19,7 +19,8 @@ struct Vertex {
   float distance2 = 0;  ///< squared, to the vertex before
   Rgb beta{0};  ///< throughput that arrives here, divided by the densities up to here; vertex 0: emitted over density
   float back = 0;   ///< solid-angle density here of the direction back times this = area density at the vertex before
-  double own = 0;   ///< area density of this vertex as its own side generated it (solid angle when infinite)
+  double own = 0;   ///< area density of this vertex as its own side generated it (solid angle when infinite); 1 for the
+                    ///< lens, the probability of its choice for a light without extent
   double sum = 0;   ///< S of the vertex *before* this one, prefix.h (R3); vertex 0: its own
   float merge = 0;  ///< merge_density here (walk.h), on the camera's side times what the merge counts for
   bool delta = false;       ///< the subpath went on from here by a delta event
@@ -29,7 +30,6 @@ struct Vertex {
   float received = 0;       ///< luminance of what next-event estimation (the lens) brought here, per area
   float emitted = 0;        ///< luminance of the light that the subpath ran into here, times its MIS weight
   uint32_t shape = none;
-  uint32_t instance = none;
   Guide guide;
   LightPoint point;  ///< vertex 0 of a light subpath
 };

@@ -30,7 +30,6 @@ struct Merging {
   Vec3 eye{0};
   float per_distance = 0;     ///< radius over distance from the eye, steepest_radius at most
   float least = 0, most = 0;  ///< radius [m]
-  double inner = 1;           ///< Shares::merge_inner (join/mis.h)
 };
 
 /// Radii that change faster would need light vertices of more than two sizes at once (join/photons.h).
@@ -55,11 +54,7 @@ struct WalkOptions {
   float window = 5;                ///< guided subpaths that promise less than 1 / window of their start face roulette
   float goes_on = 1;               ///< so many times more camera subpaths go on than that (G16)
   const Fields* fields = nullptr;  ///< guide the subpaths; null: unguided
-  double inner_share = 1;          ///< Shares::inner of all joins (join/mis.h)
-  double seen_share = 1;           ///< Shares::seen
-  double first_seen = 1;           ///< Shares::first_seen
-  double light_paths = 1;          ///< light subpaths that splat to the film, for each camera sample of a pixel; with
-                                   ///< 0, and other shares of 0, weights are of s = 0 and s = 1 alone
+  SampleCounts counts;
   Merging merging;
 };
 
@@ -68,18 +63,20 @@ struct Walk {
   Side side = Side::camera;
   Vec3 o{0}, d{0, 0, 1};
   float t_min = 0, t_max = infinity;
-  Rgb beta{1};              ///< throughput that the next vertex receives
-  double pdf = 1;           ///< solid-angle density of d; when planar, density per area perpendicular to d
-  bool planar = false;      ///< parallel light from infinity: no 1/d^2
+  Rgb beta{1};          ///< throughput that the next vertex receives
+  double pdf = 1;       ///< solid-angle density of d; when planar, density per area perpendicular to d; from the lens
+                        ///< 1, after a delta event its probability
+  bool planar = false;  ///< parallel light from infinity: no 1/d^2
   double other_before = 0;  ///< area density of a_(n-2) as the other side would generate it from a_(n-1)
   double sum = 0;           ///< S of the vertex that the ray leaves (R2); set by step, also when the ray escapes
   bool escaped = false;     ///< the ray left the scene
-  double first_share = 1;   ///< v_1 of (R2), not raised
-  EmissionSample start;     ///< of a light subpath
-  Rgb survival{1};          ///< throughput since the start, for roulette
-  bool sure = true;         ///< roulette could not have ended it so far
-  bool straight = true;     ///< all events so far were delta
-  float promise = 0;        ///< what the fields expected the subpath to bring when it began; 0: they do not know
+  double v1 = 1;         ///< v_1 of (R2), not raised: of a camera subpath SampleCounts::light_paths, of a light subpath
+                         ///< ratio_of_next_event
+  EmissionSample start;  ///< of a light subpath
+  Rgb survival{1};       ///< throughput since the start, for roulette
+  bool sure = true;      ///< roulette could not have ended it so far
+  bool straight = true;  ///< all events so far were delta
+  float promise = 0;     ///< what the fields expected the subpath to bring when it began; 0: they do not know
 };
 
 /// Numbers of a vertex's next-event estimation: takes two pairs, of which a single light uses one. False where that
@@ -118,21 +115,22 @@ inline float survival_probability(const WalkOptions& options, const Guide& guide
 }
 
 /// Samples the direction in which a path goes on, beta and survival times its weight; with roulette only some go on.
-/// False where the path ends. Both take one pair of numbers, but compute what they use alone.
-inline bool choose_direction(const Guide& guide, Mode mode, const WalkOptions& options, int vertices, Sampler& sampler,
-                             Rgb& beta, Rgb& survival, float& promised, GuideSample& out) {
+/// Returns the probability with which it did; 0 where it ends. Takes two pairs of numbers, but computes what it uses
+/// alone.
+inline float choose_direction(const Guide& guide, Mode mode, const WalkOptions& options, int vertices, Sampler& sampler,
+                              Rgb& beta, Rgb& survival, float& promised, GuideSample& out) {
   const uint32_t lobe_and_roulette = sampler.skip();
   const float u_lobe = chooses(guide) ? sampler.at(lobe_and_roulette).x : 0;
   const Rgb arrived = beta;
-  if (!sample(guide, u_lobe, sampler.next2(), mode, out) || is_black(out.weight)) return false;
+  if (!sample(guide, u_lobe, sampler.next2(), mode, out) || is_black(out.weight)) return 0;
   beta *= out.weight;
   survival *= out.weight * (mode == Mode::radiance ? sqr(out.eta) : 1.0f);
-  out.survival_probability = survival_probability(options, guide, vertices, arrived, survival, promised);
-  if (out.survival_probability == 1) return true;
-  if (!(sampler.at(lobe_and_roulette).y < out.survival_probability)) return false;
-  beta /= out.survival_probability;
-  survival /= out.survival_probability;
-  return true;
+  const float q = survival_probability(options, guide, vertices, arrived, survival, promised);
+  if (q == 1) return 1;
+  if (!(sampler.at(lobe_and_roulette).y < q)) return 0;
+  beta /= q;
+  survival /= q;
+  return q;
 }
 
 /// Starts at the camera: vertex 0 and the ray through a raster position.
@@ -168,9 +166,9 @@ inline Segment segment_to(const DirectSample& light, const Vec3& p, const Vec3& 
 
 inline bool visible(const Accel& accel, const Segment& s) { return !accel.occluded(s.o, s.d, s.t_max); }
 
-/// Density of next-event estimation at a vertex x over that of emission for the same point of a light, along unit wi (x
-/// to light). emission: of that point and direction.
-double direct_share(const Scene& scene, const Vertex& x, const LightPoint& point, const Vec3& wi, double distance2,
-                    const EmissionPdf& emission);
+/// p_N / p_L: density of next-event estimation at a vertex x over that of emission for the same point of a light, along
+/// unit wi (x to light). emission: of that point and direction.
+double ratio_of_next_event(const Scene& scene, const Vertex& x, const LightPoint& point, const Vec3& wi,
+                           double distance2, const EmissionPdf& emission);
 
 }  // namespace ajar

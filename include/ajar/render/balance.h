@@ -9,13 +9,14 @@
 
 namespace ajar {
 
-/// Sums over the passes: luminance found in a pixel behind the first vertex that is joined, by a camera subpath that
-/// roulette might have ended; of one in each pass, as it varies in the mean of all.
+/// Of a pixel, the sum and the sum of squares over passes of x: the luminance that its first sample found beyond its
+/// first joined vertex, where roulette might have ended it; times the root of the pixel's samples in the pass, so that
+/// x varies as their mean does.
 struct Beyond {
   float sum = 0, square = 0;
 };
 
-/// What roulette spares makes as large a share of the variance as of the work, or else more, or fewer, are to go on.
+/// More or fewer camera subpaths survive, until what lies beyond has the same share of the variance as of the work.
 /// (G16)
 struct Balance {
   static constexpr float least = 1, most = 16;

@@ -51,7 +51,8 @@ struct RenderState {
   Plain plain;        ///< when RenderOptions::leaves_out
 };
 
-/// Seen between batches of chunks, a few times a second at most for large images; return false to stop. May be empty.
+/// Seen between batches of chunks, a few times a second at most for large images; return false to stop. Its own time
+/// counts towards no limit. May be empty.
 using Monitor = std::function<bool(const RenderState&)>;
 
 /// Throws Error for an unknown integrator, options that check refuses, a scene that is not finished, a film without

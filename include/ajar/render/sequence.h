@@ -17,7 +17,7 @@ struct Coherence {
 struct SequenceOptions {
   Coherence coherence;
   uint32_t teach = 1;   ///< passes that teach the fields of a frame before it is rendered; they are in no image
-  uint32_t begin = 16;  ///< the same where nothing is known yet: at least 9
+  uint32_t begin = 16;  ///< the same where nothing is known yet; fewer than 9 are 9
   float forget = 0.8f;  ///< share of the evidence that is kept from frame to frame
 };
 

@@ -52,7 +52,8 @@ uint32_t add_envmap(Scene& scene, const Slot& image, float scale = 1);
 
 /// Camera space (x left, y up, z forward) at eye, looking at target.
 Mat4 look_at(const Vec3& eye, const Vec3& target);
-/// Perspective camera with a horizontal field of view [degrees]; sets the film's size, too, without a crop window.
+/// Perspective camera with a horizontal field of view between 0 and 180 degrees, eye apart from target; sets the film's
+/// size, too, without a crop window.
 void set_camera(Scene& scene, const Vec3& eye, const Vec3& target, float fov, int width, int height);
 
 // Scenes: finished, box filter, size x size pixels unless they say otherwise. Change one and call finish() again.

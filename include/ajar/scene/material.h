@@ -62,7 +62,7 @@ struct alignas(64) Material {
   float ior = 1.5046f;  ///< dielectrics, plastics: inside / outside
   Slot weight{0.5f};    ///< blend weight, mask opacity
   std::array<float, 4> weights{0, 0, 0, 0};  ///< mixture
-  Slot map;                                  ///< bumpmap height (already scaled by map_scale), normalmap normal
+  Slot map;                                  ///< bumpmap height, in units of map_scale [m]; normalmap normal
   float map_scale = 1;
   // principled (Burley 2012, 2015; the parameter names of Mitsuba 3)
   Slot roughness{0.5f}, anisotropic{0.0f}, metallic{0.0f}, spec_trans{0.0f}, spec_tint{0.0f}, sheen{0.0f},

@@ -31,7 +31,7 @@ BsdfEval eval_lobe(const Bsdf& bsdf, int i, const Vec3& wo, const Vec3& wi, Mode
   const Vec3 o = own.frame.to_local(wo), in = own.frame.to_local(wi);
   if (!own.agrees(wo, o) || !own.agrees(wi, in)) return {};
   BsdfEval e = value(o, in);
-  e.f *= mode == Mode::radiance ? cosines(in, wi) : cosines(o, wo);  // (A2)
+  e.f *= mode == Mode::radiance ? cosines(in, wi) : cosines(o, wo);  // (P5)
   return e;
 }
 

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "loader.h"
 
 namespace ajar {
@@ -51,20 +53,31 @@ Slot colour_or_texture(Params& p, const char* name) {
   return s;
 }
 
-void add(Loader& loader, Light&& light) { loader.scene.lights.push_back(std::move(light)); }
+// Factors that are numbers each may have a product that is none.
+void add(Params& p, Light&& light) {
+  const Scene& scene = p.loader.scene;
+  Rgb most = maximum(scene, light.radiance);
+  if (light.kind == LightKind::envmap) {
+    const Environment& e = scene.environments[light.environment];
+    for (const float x : scene.images[e.image].floats) most = glm::max(most, Rgb(x));
+    most *= e.scale;
+  }
+  if (!is_finite(most)) fail(p.loader, p.node, "its largest value times its scale is beyond what numbers hold");
+  p.loader.scene.lights.push_back(std::move(light));
+}
 
 void area(Params& p, uint32_t shape) {
   Light light = make_light(p, LightKind::area);
   light.radiance = colour_or_texture(p, "radiance");
   light.shape = shape;
   p.loader.scene.shapes[shape].light = uint32_t(p.loader.scene.lights.size());
-  add(p.loader, std::move(light));
+  add(p, std::move(light));
 }
 
 void constant(Params& p) {
   Light light = make_light(p, LightKind::constant);
   light.radiance = one_colour(p, "radiance");
-  add(p.loader, std::move(light));
+  add(p, std::move(light));
 }
 
 void envmap(Params& p) {
@@ -77,7 +90,7 @@ void envmap(Params& p) {
   light.to_world = orientation(regular_to_world(p));
   light.environment = uint32_t(p.loader.scene.environments.size());
   p.loader.scene.environments.push_back(make_environment(p.loader.scene, image, float(scale), !p.loader.document.old));
-  add(p.loader, std::move(light));
+  add(p, std::move(light));
 }
 
 void point(Params& p) {
@@ -85,11 +98,20 @@ void point(Params& p) {
   light.radiance = one_colour(p, "intensity");
   const Node* position = find(p, {"position"});
   const DVec3 at = position == nullptr ? DVec3(0) : vector_of(p.loader, *position, 0);
-  light.position = Vec3(to_world(p) * glm::dvec4(at, 1));
-  add(p.loader, std::move(light));
+  const DVec3 place(to_world(p) * glm::dvec4(at, 1));
+  require_near(p, place);
+  light.position = Vec3(place);
+  add(p, std::move(light));
 }
 
-// The picture that a spot throws is its texture times its intensity.
+// Where a light stands that throws a cone or a picture, and how it is turned.
+void put(Params& p, const DMat4& m, Light& light) {
+  require_near(p, DVec3(m[3]));
+  light.to_world = orientation(m);
+  light.position = Vec3(DVec3(m[3]));
+  light.to_world[3] = Vec4(light.position, 1);
+}
+
 // A picture that is thrown is of no mesh.
 void refuse_attributes(Params& p, const Slot& picture) {
   Shown shown;
@@ -98,6 +120,7 @@ void refuse_attributes(Params& p, const Slot& picture) {
     unsupported(p.loader, p.node, "its picture shows a mesh attribute, and it has no mesh", "black in its place");
 }
 
+// The picture that a spot throws is its texture times its intensity.
 void project_texture(Params& p, double cutoff, Light& light) {
   const Node* node = find(p, {"texture"});
   if (node == nullptr) return;
@@ -118,11 +141,11 @@ void spot(Params& p) {
   light.beam = float(glm::radians(beam));
   project_texture(p, cutoff, light);
   const DMat4 m = regular_to_world(p);
-  light.to_world = orientation(m);
-  light.to_world[3] = Vec4(Vec3(DVec3(m[3])), 1);
-  light.position = Vec3(DVec3(m[3]));
+  if (!is_similarity(m))
+    unsupported(p.loader, p.node, "its to_world stretches its cone: turn, move and scale alone", "round in its place");
+  put(p, m, light);
   light.direction = Vec3(checked_direction(p.loader, p.node, DVec3(m[2])));
-  add(p.loader, std::move(light));
+  add(p, std::move(light));
 }
 
 void directional(Params& p) {
@@ -131,7 +154,7 @@ void directional(Params& p) {
   const Node* direction = find(p, {"direction"});
   const DVec3 d = direction == nullptr ? DVec3(0, 0, 1) : vector_of(p.loader, *direction, 0);
   light.direction = Vec3(checked_direction(p.loader, p.node, DVec3(to_world(p) * glm::dvec4(d, 0))));
-  add(p.loader, std::move(light));
+  add(p, std::move(light));
 }
 
 // A picture thrown through a pinhole: the reverse of a perspective camera. Mitsuba's irradiance lacks a factor of pi.
@@ -153,11 +176,9 @@ void projector(Params& p) {
   light.plane = Vec2(float(x), float(x * camera.height / camera.width));
   const DMat4 m = regular_to_world(p);
   if (!is_similarity(m)) fail(p.loader, p.node, "its to_world should not stretch: turn, move and scale alone");
-  light.to_world = orientation(m);
-  light.to_world[3] = Vec4(Vec3(DVec3(m[3])), 1);
-  light.position = Vec3(DVec3(m[3]));
+  put(p, m, light);
   light.direction = Vec3(light.to_world[2]);
-  add(p.loader, std::move(light));
+  add(p, std::move(light));
 }
 
 void sky(Params& p) { load_daylight(p, true, false); }
@@ -181,6 +202,11 @@ DMat4 regular_to_world(Params& p) {
   if (!(size > 0) || !(std::abs(glm::dot(x, glm::cross(y, z))) > 1e-9 * size))
     fail(p.loader, p.node, "its to_world is singular");
   return m;
+}
+
+void require_near(const Params& p, const DVec3& at) {
+  const double most = std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)});
+  if (!(most <= 1e18)) fail(p.loader, p.node, "it stands farther than 1e18 units away; move it nearer");
 }
 
 Mat4 orientation(const DMat4& m) {

@@ -139,6 +139,8 @@ DMat4 transform_of(const Loader& loader, const Node& node);
 DMat4 to_world(Params& params, const char* name = "to_world");
 /// The same of a light, which has to be invertible.
 DMat4 regular_to_world(Params& p);
+/// Of what stands at a point, to or from which rays go.
+void require_near(const Params& p, const DVec3& at);
 /// Rotation (and mirror) of a transform, without its scale and position; lights at infinity have neither.
 Mat4 orientation(const DMat4& m);
 /// The unit vector across a unit vector z that Mitsuba takes where none is given, another one in 0.x than later: the

@@ -37,7 +37,7 @@ Filter read_filter(Loader& loader, const Node& node) {
   if (kind == FilterKind::gaussian) {
     filter = make_filter(kind, radius, sized("stddev", 0.5));
   } else if (kind == FilterKind::mitchell) {
-    const double b = number(p, "b", 1.0 / 3), c = number(p, has(p, "a") ? "a" : "c", 1.0 / 3);
+    const double b = number(p, "b", 1.0 / 3), c = number(p, "c", 1.0 / 3);
     if (!(std::abs(b) <= 4 && std::abs(c) <= 4)) fail(loader, node, "B and C should be from -4 to 4");
     filter = make_filter(kind, radius, float(b), float(c));
   } else if (kind == FilterKind::lanczos) {
@@ -151,6 +151,7 @@ void read_view(Params& p, Camera& camera) {
     set_perspective(camera, float(glm::degrees(2 * std::atan(tan_x))), Mat4(m));
     camera.plane = Vec2(float(tan_x), float(tan_x / aspect * scale.y / scale.x));
   }
+  require_near(p, DVec3(m[3]));
   if (!(std::min(camera.plane.x, camera.plane.y) > 1e-18f && std::max(camera.plane.x, camera.plane.y) < 1e18f))
     fail(p.loader, p.node, "its to_world stretches the view beyond measure");
   const double x = number(p, "principal_point_offset_x", 0), y = number(p, "principal_point_offset_y", 0);

@@ -308,7 +308,9 @@ void note_strays(Params& p, const char* tag, const char* text) {
 
 void load_instance(Loader& loader, const Node& node, uint32_t group) {
   if (group != none)
-    fail(loader, node, "an instance inside a shapegroup is not supported; put the shapes that it shows there");
+    return unsupported(loader, node,
+                       "an instance inside a shapegroup is not supported; put the shapes that it shows there",
+                       "left out");
   Params p(loader, node);
   const std::vector<const Node*> groups = nested(p, "shape");
   if (groups.size() != 1 || groups.front()->type != "shapegroup")
@@ -348,11 +350,14 @@ void load_part(Params& p, void (*read)(Params&, Shape&, const MeshPart&), const 
   read(p, shape, part);
   refuse_media(p);
   refuse_sensors(p);
-  const std::vector<const Node*> emitters = nested(p, "emitter");
+  std::vector<const Node*> emitters = nested(p, "emitter");
   if (emitters.size() > 1) fail(loader, p.node, "has more than one emitter; keep one of them");
-  if (!emitters.empty() && group != none)
-    fail(loader, p.node, "a light inside a shapegroup is not supported; put the shape beside the group");
   shape.material = material_of(p, part, !emitters.empty());
+  if (!emitters.empty() && group != none) {
+    unsupported(loader, *emitters.front(),
+                "a light inside a shapegroup is not supported; put the shape beside the group", "left out");
+    emitters.clear();
+  }
   if (shape.kind == ShapeKind::mesh && loader.scene.meshes[shape.mesh].triangles.empty()) {
     note_empty(p, part);
     loader.scene.meshes.pop_back();
@@ -383,7 +388,9 @@ uint32_t load_shape_group(Loader& loader, const Node& node) {
 
 void load_shape(Loader& loader, const Node& node, uint32_t group) {
   if (node.type == "shapegroup") {
-    if (group != none) fail(loader, node, "a shapegroup inside a shapegroup is not supported; put its shapes there");
+    if (group != none)
+      return unsupported(loader, node, "a shapegroup inside a shapegroup is not supported; put its shapes there",
+                         "left out");
     load_shape_group(loader, node);
     return;
   }

@@ -216,6 +216,7 @@ TEST(Films, Filters) {
   EXPECT_EQ(zeros.a, 0);
   EXPECT_EQ(zeros.b, 0);
   EXPECT_EQ(filter("mitchell").a, 1.0f / 3);
+  EXPECT_EQ(filter("mitchell", "<float name='A' value='2'/>").b, 1.0f / 3);  // no parameter of Mitsuba's code
   EXPECT_SAYS(error(film(10, 10, "<rfilter type='sharp'/>")), "unknown filter; supported: box, tent");
   EXPECT_SAYS(error(film(10, 10, "<rfilter type='gaussian'><float name='stddev' value='100'/></rfilter>")),
               "stddev should be");

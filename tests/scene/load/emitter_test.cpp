@@ -59,6 +59,23 @@ TEST(Emitters, EnvmapReachesThePoles) {
   EXPECT_NEAR(seen("0.6.0"), 9, 1e-4);
 }
 
+// Each is a number; their product is none.
+TEST(Emitters, BeyondWhatNumbersHold) {
+  const std::string scale = "<float name='scale' value='1e31'/>";
+  const std::string map = "<string name='filename' value='" + write_pfm("bright.pfm", {5, 5, 5, 5, 1e8f, 5}) + "'/>";
+  EXPECT_SAYS(error_of(emitter("envmap", map + scale)), "beyond what numbers hold");
+  EXPECT_EQ(load_inside(emitter("envmap", map)).lights.size(), 1u);
+  const std::string texture =
+      "<texture name='radiance' type='scale'>" + scale + "<texture type='bitmap'>" + map + "</texture></texture>";
+  EXPECT_SAYS(error_of("<shape type='sphere'>" + emitter("area", texture) + "</shape>"), "beyond what numbers hold");
+}
+
+TEST(Emitters, FartherThanRaysGo) {
+  const std::string far = "<transform name='to_world'><translate x='1e19'/></transform>";
+  for (const char* type : {"point", "spot", "projector"})
+    EXPECT_SAYS(error_of(emitter(type, far)), "stands farther than 1e18 units away; move it nearer");
+}
+
 // Maps of bright lights have negative texels after resizing, and worse after mistakes.
 TEST(Emitters, EnvmapWithBadTexels) {
   const auto file = [](const std::string& path, const std::string& inside = "") {
@@ -100,6 +117,9 @@ TEST(Emitters, Spot) {
   EXPECT_SAYS(error_of(emitter("spot", "<float name='cutoff_angle' value='181'/>")), "cutoff_angle");
   EXPECT_EQ(light("spot", "<float name='cutoff_angle' value='180'/>").cutoff, pi);  // all around
   EXPECT_SAYS(error_of(emitter("spot", "<float name='beam_width' value='30'/>")), "beam_width");
+  const std::string wide = emitter("spot", "<transform name='to_world'><scale x='2'/></transform>");
+  EXPECT_SAYS(error_of(wide), "its to_world stretches its cone");
+  EXPECT_EQ(load_inside(wide, lenient()).lights.size(), 1u);
   for (const auto& [type, slot] : {std::pair("spot", "texture"), std::pair("projector", "irradiance")})
     EXPECT_SAYS(error_of(emitter(type, "<texture name='" + std::string(slot) +
                                            "' type='mesh_attribute'><string name='name' value='vertex_c'/></texture>")),

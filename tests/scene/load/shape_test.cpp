@@ -282,7 +282,11 @@ TEST(Shapes, GroupsAndInstances) {
   }
   EXPECT_SAYS(error_of(shape("instance")), "needs a <ref> to one <shape type=\"shapegroup\">");
   EXPECT_SAYS(error_of(group + instance("<scale value='0'/>")), "singular");
-  EXPECT_SAYS(error_of(shape("shapegroup", shape("sphere", light))), "light inside a shapegroup");
+  const std::string lit = shape("shapegroup", shape("sphere", light));
+  EXPECT_SAYS(error_of(lit), "light inside a shapegroup");
+  const Scene dark = load_inside(lit, lenient());
+  EXPECT_EQ(dark.shapes.size(), 1u);
+  EXPECT_TRUE(dark.lights.empty());
 }
 
 TEST(Shapes, WhatShowsNothingIsTold) {

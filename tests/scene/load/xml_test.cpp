@@ -212,7 +212,7 @@ TEST(References, CyclesAreErrors) {
                        "<bsdf type='diffuse'><ref name='reflectance' id='t'/></bsdf>"),
               "contains itself");
   EXPECT_SAYS(error_of("<shape type='shapegroup' id='g'><shape type='instance'><ref id='g'/></shape></shape>"),
-              "not supported");
+              "an instance inside a shapegroup is not supported");
 }
 
 // Elements that name others twice, again and again, are small in the file and endless to evaluate.
