@@ -45,7 +45,7 @@ TEST(Schedule, StatesAreOfTheirRenders) {
   EXPECT_EQ(said(blind, blind, scene), "");
   for (const char* integrator : {"bdpt", "light", "guided-bdpt", "vcm", "photon", "vpl", "plain-vpl"}) {
     blind = options_of(integrator, 1), blind.next_event = false;
-    has(said(blind, blind, scene), "next-event estimation");
+    has(said(blind, blind, scene), "next_event false is for path and guided-path");
   }
   EXPECT_EQ(of("guided-path", "guided-path"), "");
 }

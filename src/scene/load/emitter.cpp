@@ -56,7 +56,9 @@ Slot colour_or_texture(Params& p, const char* name) {
 // Factors that are numbers each may have a product that is none.
 void add(Params& p, Light&& light) {
   const Scene& scene = p.loader.scene;
-  Rgb most = maximum(scene, light.radiance);
+  Shown shown;
+  list_shown(scene, light.radiance, shown);
+  Rgb most = shown.attributes.empty() ? maximum(scene, light.radiance) : Rgb(0);  // those are of the mesh
   if (light.kind == LightKind::envmap) {
     const Environment& e = scene.environments[light.environment];
     for (const float x : scene.images[e.image].floats) most = glm::max(most, Rgb(x));
