@@ -173,7 +173,7 @@ TEST_F(FieldsUsed, WhatMakesNoSenseIsAnError) {
       {{"--field-rate", "fast"}, "guided-bdpt", "--field-rate fast: is none of"},
       {{"--train", "3"}, "guided-bdpt", "--train 3: passes come in pairs"},
       {{"--train", "4"}, "path", "--train: the integrator path learns no fields"},
-      {{"--no-next-event"}, "guided-bdpt", "--no-next-event: guided-bdpt needs it"},
+      {{"--no-next-event"}, "guided-bdpt", "guided-bdpt finds light in more ways"},
       {{"--load-fields", fields, "--field-structure", "grid"}, "guided-bdpt", "stored fields bring their structure"},
       {{"--load-fields", none_such}, "guided-bdpt", none_such + ": no such file of fields"},
       {{"--load-fields", box}, "guided-bdpt", box + ": not a file of fields of this version"},

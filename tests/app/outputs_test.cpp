@@ -58,7 +58,7 @@ TEST_F(Outputs, WrongOnesAreErrorsBeforeTheRender) {
       {{"--light-choice", "learned", "--integrator", "vcm"}, "vcm learns no choice of lights; take path, bdpt or"},
       {{"--light-choice", "tree", "--integrator", "path", "--no-next-event"}, "no light is chosen; leave it out"},
       {{"--light-choice", "tree", "--integrator", "light"}, "light chooses its lights by power or uniform"},
-      {{"--integrator", "path", "--no-next-event", "--versus", "bdpt"}, "--no-next-event: bdpt needs it"},
+      {{"--integrator", "path", "--no-next-event", "--versus", "bdpt"}, "bdpt finds light in more ways"},
       {{"--integrator", "path", "--light-choice", "learned", "--versus", "light"}, "by power or uniform; leave it out"},
       {{"--integrator", "path", "--light-choice", "learned", "--versus", "plain-vpl"}, "plain-vpl learns no choice"},
       {{"--max-depth", "5000"}, "--max-depth 5000: paths end at 4096 edges"},

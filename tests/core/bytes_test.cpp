@@ -120,6 +120,17 @@ TEST_F(Bytes, WhatCannotBeWrittenIsAnErrorAndLeavesNothing) {
   }
 }
 
+TEST_F(Bytes, PipesAreNoLists) {
+  path = "/dev/null";
+  try {
+    read();
+    ADD_FAILURE();
+  } catch (const Error& e) {
+    EXPECT_STREQ(e.what(), "/dev/null: is no regular file; copy this list to one");
+  }
+  path.clear();  // is not to be removed
+}
+
 // A full disk: what is there stays, and the message says why.
 TEST_F(Bytes, TheCauseIsSaidAndTheOldFileStays) {
   write();
