@@ -103,7 +103,7 @@ Vec3 sample(const Fields& fields, const Field& field, uint32_t cell, const Vec3&
 size_t bytes(const Fields& f) {
   const auto of = [](const Field& x) {
     return (x.cells.size() + x.portals.size()) * sizeof(FieldCell) +
-           x.nodes.size() * (sizeof(StrataNode) + 32 * sizeof(Short));
+           x.nodes.size() * (sizeof(StrataNode) + 32 * sizeof(UFloat16));
   };
   return f.table.slots.size() * sizeof(CellTable::Slot) + f.table.parts.size() * sizeof(f.table.parts[0]) +
          f.table.probes.size() * sizeof(Probe) + f.cells.size() * sizeof(Cell) + bytes(f.views) + of(f.q) + of(f.w) +

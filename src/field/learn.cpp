@@ -219,7 +219,7 @@ void add_cells(Fields& fields, const Sightings& sightings, const LearnOptions& o
 
 // Cells of patches that the memory has room for, with their places in the hash table.
 double affordable_cells(size_t memory) {
-  constexpr double strata = (1 + zones) * (sizeof(StrataNode) + 32 * sizeof(Short));
+  constexpr double strata = (1 + zones) * (sizeof(StrataNode) + 32 * sizeof(UFloat16));
   return (1 - for_views) * double(memory) /
          (2 * (strata + sizeof(FieldCell)) + sizeof(Cell) + 3 * sizeof(CellTable::Slot) + sizeof(Probe));
 }
@@ -244,7 +244,7 @@ void doubt_cell(Field& field, FieldCell& cell, float kept, const LearnOptions& o
   for (size_t k = 0; k < order.size(); ++k)
     for (int i = 0; i < 16; ++i) {
       if (field.nodes[order[k]].is_divided(i)) order.push_back(field.nodes[order[k]].child(i));
-      Short& of_stratum = field.weight[16 * size_t(order[k]) + size_t(i)];
+      UFloat16& of_stratum = field.weight[16 * size_t(order[k]) + size_t(i)];
       of_stratum = kept * of_stratum;
       weight += of_stratum;
     }

@@ -47,8 +47,8 @@ void write(Writer& w, const Field& f) {
     for (const FieldCell& c : *cells) cell_members(w, c);
   w.value(uint64_t(f.nodes.size()));
   for (const StrataNode& n : f.nodes) w.value(n.before), w.value(n.divided), w.value(n.children);
-  w.bytes(f.mean.data(), f.mean.size() * sizeof(Short));
-  w.bytes(f.weight.data(), f.weight.size() * sizeof(Short));
+  w.bytes(f.mean.data(), f.mean.size() * sizeof(UFloat16));
+  w.bytes(f.weight.data(), f.weight.size() * sizeof(UFloat16));
 }
 
 // first: the first stratum in use.
@@ -103,15 +103,15 @@ void read(Reader& r, Structure structure, size_t cells, size_t portals, Field& f
       cell_members(r, c);
       r.require(is_sound(c, portals));
     }
-  f.nodes.resize(r.count(sizeof(StrataNode) - 2 + 32 * sizeof(Short)));
+  f.nodes.resize(r.count(sizeof(StrataNode) - 2 + 32 * sizeof(UFloat16)));
   for (StrataNode& n : f.nodes) {
     r.value(n.before), r.value(n.divided), r.value(n.children);
     r.require(structure != Structure::adaptive || is_sound(n, 0));
   }
   f.mean.resize(16 * f.nodes.size());
   f.weight.resize(16 * f.nodes.size());
-  r.bytes(f.mean.data(), f.mean.size() * sizeof(Short));
-  r.bytes(f.weight.data(), f.weight.size() * sizeof(Short));
+  r.bytes(f.mean.data(), f.mean.size() * sizeof(UFloat16));
+  r.bytes(f.weight.data(), f.weight.size() * sizeof(UFloat16));
   r.require(std::all_of(f.mean.begin(), f.mean.end(), is_amount) &&
             std::all_of(f.weight.begin(), f.weight.end(), is_amount));
   std::vector<bool> claimed(f.nodes.size());

@@ -33,7 +33,7 @@ void reshape(Tree& tree, float total, const LearnOptions& options, bool divides)
 // Finished trees. The children of a node follow each other.
 struct Trees {
   std::vector<StrataNode> nodes;
-  std::vector<Short> mean, weight;
+  std::vector<UFloat16> mean, weight;
 };
 // Returns the root.
 uint32_t append(Trees& out, const Tree& tree, Structure structure);

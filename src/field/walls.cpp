@@ -16,7 +16,7 @@ namespace ajar {
 namespace {
 
 constexpr uint32_t walks = 2048, bounces = 16;  // of the camera, and as many of the lights
-constexpr size_t most_points = 64;              // of a cube
+constexpr size_t most_points = 64;              // of a cube: a bit each of a uint64_t
 constexpr float most_middle = 0.2f;             // of the scene's radius: larger ones are the scene
 constexpr float largest_around = 20;            // scene's radius over the middle's: cubes are there for no more
 

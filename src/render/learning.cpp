@@ -53,10 +53,10 @@ void go_on_from(const Scene& scene, StoredFields stored, const LearnOptions& opt
   l.fields.rule = options.rule;
   Field& w = l.fields.w;
   w.unit *= scale;
-  for (Short& m : w.mean) m = float(scale) * m;
+  for (UFloat16& m : w.mean) m = float(scale) * m;
   for (FieldCell& c : w.cells) c.direct *= float(scale), c.total *= float(scale);
   l.fields.starts.unit *= scale, l.fields.disk.unit *= scale;
-  for (Short& m : l.fields.disk.mean) m = float(scale) * m;
+  for (UFloat16& m : l.fields.disk.mean) m = float(scale) * m;
   restrict_to(l.fields, options.guided);
   l.training = start_training(l.fields);
   if (l.fields.generation < blind(l)) l.fields.generation -= l.fields.generation % 2;  // passes are dropped in pairs

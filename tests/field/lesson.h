@@ -56,7 +56,7 @@ inline float mean_of(const Field& f, int stratum) { return f.mean[16 * size_t(f.
 inline float weight_of(const Field& f, int stratum) { return f.weight[16 * size_t(f.cells[0].root) + size_t(stratum)]; }
 
 /// What 16 bits keep of it.
-inline float kept(float x) { return Short(x); }
+inline float kept(float x) { return UFloat16(x); }
 
 template <class T>
 bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {

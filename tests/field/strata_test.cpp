@@ -62,12 +62,12 @@ void expect_same_square(const Vec3& w) {
   EXPECT_GE(back.z, 0);
 }
 
-TEST(Short, ErrsByOnePartIn512AtMost) {
-  for (float x = 1e-37f; x < 1e38f; x *= 1.0137f) EXPECT_NEAR(Short(x) / x, 1, 1.0 / 512) << x;
-  for (const float x : {0.0f, 0.25f, 1.0f, 3.0f, 9.0f, 255.0f}) EXPECT_EQ(Short(x), x);
-  EXPECT_EQ(Short(-1), 0.0f);
-  EXPECT_LT(Short(infinity), infinity);
-  EXPECT_GT(Short(infinity), 3e38f);
+TEST(UFloat16, ErrsByOnePartIn512AtMost) {
+  for (float x = 1e-37f; x < 1e38f; x *= 1.0137f) EXPECT_NEAR(UFloat16(x) / x, 1, 1.0 / 512) << x;
+  for (const float x : {0.0f, 0.25f, 1.0f, 3.0f, 9.0f, 255.0f}) EXPECT_EQ(UFloat16(x), x);
+  EXPECT_EQ(UFloat16(-1), 0.0f);
+  EXPECT_LT(UFloat16(infinity), infinity);
+  EXPECT_GT(UFloat16(infinity), 3e38f);
 }
 
 TEST(Square, ThereAndBackOverTheHemisphere) {

@@ -35,8 +35,8 @@ inline float mix_of(const FieldCell& cell) { return cell.even ? 0 : cell.mix; }
 struct Field {
   std::vector<FieldCell> cells;
   std::vector<StrataNode> nodes;
-  std::vector<Short> mean;         ///< 16 per node: what the stratum's field is, without what is direct
-  std::vector<Short> weight;       ///< 16 per node: how much evidence stands behind it, in records of typical weight
+  std::vector<UFloat16> mean;      ///< 16 per node: what the stratum's field is, without what is direct
+  std::vector<UFloat16> weight;    ///< 16 per node: how much evidence stands behind it, in records of typical weight
   std::vector<FieldCell> portals;  ///< two for each portal, of what goes down and up its axis: strata of its disk
   double unit = 1;                 ///< a typical value, from the scene's power and size
 };

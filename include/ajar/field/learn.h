@@ -22,7 +22,8 @@ struct LearnOptions {
   float least_contrast = 10;        ///< below, a cell's strata do not guide: left side of (G14)
   float forget = 0.5f;              ///< share of older evidence that is kept; 1: a stratum is the mean of its records
   bool steady = false;              ///< a cell's field stays as it is until what was learned contradicts it (T2)
-  uint32_t train = 0;  ///< passes of training, even, after which fields are frozen; 0: they learn all along
+  uint32_t train = 0;  ///< passes of training, even, after which fields are frozen; half of a time limit at most; 0:
+                       ///< they learn all along
   Guided guided = Guided::both;
   bool lights = true;  ///< next-event estimation learns which lights a cell sees
 };

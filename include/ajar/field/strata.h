@@ -27,11 +27,11 @@ struct StrataNode {
 
 /// A number that is not negative in 16 bits, eight of them for the exponent: rounding errs by 2^-9 of it at most. What
 /// is too large becomes the largest.
-struct Short {
+struct UFloat16 {
   uint16_t bits = 0;
 
-  Short() = default;
-  Short(float x) : bits(uint16_t(std::min((std::bit_cast<uint32_t>(std::max(x, 0.0f)) + 0x4000u) >> 15, most))) {}
+  UFloat16() = default;
+  UFloat16(float x) : bits(uint16_t(std::min((std::bit_cast<uint32_t>(std::max(x, 0.0f)) + 0x4000u) >> 15, most))) {}
   operator float() const { return std::bit_cast<float>(uint32_t(bits) << 15); }
   static constexpr uint32_t most = 0xfeff;
 };
