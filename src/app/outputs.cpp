@@ -151,17 +151,12 @@ void Log::write(const RenderState& state, bool last) {
   add_account(j, state);
   waiting += j.dump() + "\n";
   if (spares && !last && state.stats.seconds <= save_seconds) return;
-  begin();
+  errno = 0;
+  if (spares) file.close(), file.open(path, std::ios::out);  // empties it
+  spares = false;
   if (file << waiting << std::flush) return waiting.clear();
   fault = fmt::format("{}: cannot be written ({}); the log ends there", path, std::strerror(errno));
   file.close();
-}
-
-void Log::begin() {
-  errno = 0;
-  if (!spares) return;
-  file.close(), file.open(path, std::ios::out);
-  spares = false;
 }
 
 Picture read_reference(const std::string& path, const Camera& camera) {

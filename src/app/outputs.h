@@ -18,14 +18,12 @@ struct Log {
   std::string path;
   std::ofstream file;
   std::string waiting;  ///< lines, while what an earlier render left in the file is worth more
-  bool spares = false;  ///< whether there is such
+  bool spares = false;  ///< whether there is such: until the first line after a minute, or the last one
   std::optional<Picture> reference;
   std::string fault;  ///< of the first line that could not be written; none follow it
   double next = 0.1;
 
   void write(const RenderState& state, bool last);
-  /// Lets go of what an earlier render left; done by the first line after a minute, or the last one.
-  void begin();
 };
 /// The image to measure errors against; throws Error unless it is fit for that.
 Picture read_reference(const std::string& path, const Camera&);

@@ -160,14 +160,18 @@ Environment make_environment(const Scene& scene, uint32_t id, float scale, bool 
     const float solid = float(solid_of_row(y, image.height, polar));
     for (int x = 0; x < image.width; ++x) {
       const Rgb c = texel(image, x, y);
-      if (!(c.x >= 0 && c.y >= 0 && c.z >= 0 && is_finite(c))) bad[size_t(y)] = x;
+      if (!(c.x >= 0 && c.y >= 0 && c.z >= 0 && is_finite(c * std::max(scale, 1.0f)))) bad[size_t(y)] = x;
       weights[size_t(y) * size_t(image.width) + size_t(x)] = luminance(c) * solid;
     }
   });
   for (int y = 0; y < image.height; ++y)
-    if (bad[size_t(y)] >= 0)
-      throw Error(
-          fmt::format("{}: pixel ({}, {}) is negative or not finite; repair the image", image.name, bad[size_t(y)], y));
+    if (const int x = bad[size_t(y)]; x >= 0) {
+      const Rgb c = texel(image, x, y);
+      const bool by_scale = is_finite(c) && std::min({c.x, c.y, c.z}) >= 0;
+      throw Error(fmt::format("{}: pixel ({}, {}) {}", image.name, x, y,
+                              by_scale ? fmt::format("times {} is beyond what numbers hold; make scale smaller", scale)
+                                       : "is negative or not finite; repair the image"));
+    }
   return {id, scale, polar, Distribution2D(weights, image.width, image.height)};
 }
 

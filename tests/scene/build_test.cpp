@@ -41,11 +41,12 @@ std::string refusal(const std::function<void(Scene&)>& change) {
   return kit::error_of([&] { finish(scene); });
 }
 
+void expect(const char* words, const std::function<void(Scene&)>& change) {
+  const std::string said = refusal(change);
+  EXPECT_NE(said.find(words), std::string::npos) << words << ": " << said;
+}
+
 TEST(Build, what_does_not_fit_is_an_error) {
-  const auto expect = [](const char* words, const std::function<void(Scene&)>& change) {
-    const std::string said = refusal(change);
-    EXPECT_NE(said.find(words), std::string::npos) << words << ": " << said;
-  };
   EXPECT_EQ(refusal([](Scene&) {}), "");
   const float nan = std::nanf("");
   expect("shape 0: its material is 5, and the scene has 1", [](Scene& s) { s.shapes[0].material = 5; });
@@ -104,10 +105,6 @@ TEST(Build, what_does_not_fit_is_an_error) {
 }
 
 TEST(Build, cameras_that_cannot_be_are_errors) {
-  const auto expect = [](const char* words, const std::function<void(Scene&)>& change) {
-    const std::string said = refusal(change);
-    EXPECT_NE(said.find(words), std::string::npos) << words << ": " << said;
-  };
   const auto set = [](const Vec3& eye, const Vec3& target, float fov) {
     return [=](Scene& s) { set_camera(s, eye, target, fov, 8, 8); };
   };

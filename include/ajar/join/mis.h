@@ -22,9 +22,8 @@ struct End {
 
 /// Next-event estimation's part in a path: it draws the light's point afresh.
 struct NextEvent {
-  double ratio =
-      1;            ///< p_N / p_L: density of next-event estimation over that of emission for a_0 (ratio_of_next_event)
-  double rays = 1;  ///< to lights, from the vertex of s = 1; s = 0 and s = 1 share what is theirs as if each counted
+  double ratio = 1;  ///< p_N / p_L at a_0: its density over that of emission (ratio_of_next_event)
+  double rays = 1;   ///< to lights, from the vertex of s = 1; s = 0 and s = 1 share what is theirs as if each counted
 };
 
 /// Weight of the strategy that joins light (s = light.n >= 0) and camera (t = camera.n >= 1) vertices. For s = 0 the

@@ -152,7 +152,7 @@ struct Environment {
   bool polar = false;
   Distribution2D table;  ///< made by make_environment: the share of each texel
 };
-/// Throws Error where a texel is negative or not finite.
+/// Throws Error where a texel is negative or not finite, or is not when times scale.
 Environment make_environment(const Scene& scene, uint32_t image, float scale, bool polar = false);
 
 }  // namespace ajar

@@ -116,8 +116,9 @@ struct Scene {
 /// Computes what is derived (areas, bounds, light choice); call once after building or changing a scene. Throws Error
 /// where parts do not fit (an index that leads nowhere, lists of a mesh or image of other lengths than they say, an
 /// area light and a shape that do not name each other), where a colour of a material or light, or a light's
-/// sampling_weight, is not finite or negative, where something reaches farther than 1e18 units, where the transform of
-/// an environment, spot or projector cannot be inverted, and for bsdfs that cannot be (one that is part of itself).
+/// sampling_weight, is not finite or negative, where something reaches or stands farther than 1e18 units, where the
+/// transform of an environment, spot or projector cannot be inverted, for a camera without a view, a lens or a place
+/// for its crop window, and for bsdfs that cannot be (one that is part of itself, an index of refraction below 0).
 void finish(Scene& scene);
 /// Throws Error unless finish was called since the scene was built or added to. Changes that leave all numbers of parts
 /// as they are go unnoticed.

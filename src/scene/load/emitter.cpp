@@ -53,18 +53,15 @@ Slot colour_or_texture(Params& p, const char* name) {
   return s;
 }
 
-// Factors that are numbers each may have a product that is none.
+// Factors that are numbers each may have a product that is none. Texels alone are numbers.
 void add(Params& p, Light&& light) {
   const Scene& scene = p.loader.scene;
+  const uint32_t texture = light.radiance.texture;
   Shown shown;
   list_shown(scene, light.radiance, shown);
-  Rgb most = shown.attributes.empty() ? maximum(scene, light.radiance) : Rgb(0);  // those are of the mesh
-  if (light.kind == LightKind::envmap) {
-    const Environment& e = scene.environments[light.environment];
-    for (const float x : scene.images[e.image].floats) most = glm::max(most, Rgb(x));
-    most *= e.scale;
-  }
-  if (!is_finite(most)) fail(p.loader, p.node, "its largest value times its scale is beyond what numbers hold");
+  const bool may_overflow = texture == none || scene.textures[texture].kind != TextureKind::bitmap;
+  if (may_overflow && shown.attributes.empty() && !is_finite(maximum(scene, light.radiance)))
+    fail(p.loader, p.node, "its largest value times its scale is beyond what numbers hold");
   p.loader.scene.lights.push_back(std::move(light));
 }
 
