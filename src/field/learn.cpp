@@ -163,9 +163,10 @@ void join(Field& to, Trees trees, std::span<FieldCell> cells) {
   to.weight.insert(to.weight.end(), trees.weight.begin(), trees.weight.end());
 }
 
-// structure: of its strata. Where its cells are not those of the fields, they have no size.
-Field learn_field(const Fields& fields, const Field& field, Structure structure, const Tallies& tallies, double paths,
-                  const LearnOptions& options, const std::vector<bool>& moved = {}) {
+// structure: of its strata. places: its cells'; none: they have no size.
+Field learn_field(const Fields& fields, const Field& field, std::span<const Cell> places, Structure structure,
+                  const Tallies& tallies, double paths, const LearnOptions& options,
+                  const std::vector<bool>& moved = {}) {
   constexpr uint32_t block = 64;
   const uint32_t n = uint32_t(field.cells.size()), blocks = (n + block - 1) / block;
   const bool divides = is_left(fields, for_strata, options);
@@ -176,8 +177,7 @@ Field learn_field(const Fields& fields, const Field& field, Structure structure,
   parallel_for(blocks, [&](uint32_t b) {
     Rebuild work{structure, fields.rule, &fields, &field, &tallies, &options, divides, {}};
     for (uint32_t c = b * block; c < std::min(n, (b + 1) * block); ++c) {
-      const bool sized = &field != &fields.disk;
-      const double edge = sized ? double(fields.table.edge(level_of(fields.cells[c].key))) : 1;
+      const double edge = places.empty() ? 1 : double(fields.table.edge(level_of(places[c].key)));
       next.cells[c] = learn_cell(work, c, edge * edge, paths, trees[b]);
     }
   });
@@ -326,9 +326,9 @@ Fields learn(const Fields& fields, const Training& training, const Sightings& si
   next.cells = fields.cells;
   next.lines = fields.lines;
   const std::vector<bool> moved = move_portals(training, next);
-  next.q = learn_field(fields, fields.q, fields.structure, training.q, paths.camera, options, moved);
-  next.w = learn_field(fields, fields.w, fields.structure, training.w, paths.light, options, moved);
-  next.disk = learn_field(fields, fields.disk, Structure::adaptive, training.disk, paths.light, options);
+  next.q = learn_field(fields, fields.q, fields.cells, fields.structure, training.q, paths.camera, options, moved);
+  next.w = learn_field(fields, fields.w, fields.cells, fields.structure, training.w, paths.light, options, moved);
+  next.disk = learn_field(fields, fields.disk, {}, Structure::adaptive, training.disk, paths.light, options);
   next.lights = fields.lights, next.starts = fields.starts;
   if (lights && !lights->nodes.empty()) learn_choices(fields, training, options, *lights, next);
   for (uint32_t c = 0; c < next.cells.size(); ++c) {

@@ -160,9 +160,6 @@ bool all_finite(const Mat4& m) {
   return is_finite(Vec3(m[0])) && is_finite(Vec3(m[1])) && is_finite(Vec3(m[2])) && is_finite(Vec3(m[3]));
 }
 
-// Rays begin and end there: beyond, the ray tracer's squares of distances are no numbers.
-bool is_near(const Vec3& p) { return max_abs(p) <= 1e18f; }
-
 void check_camera(const Camera& c) {
   const auto refuse_camera = [](const char* what) { throw Error(fmt::format("scene: its camera {}", what)); };
   if (c.width < 1 || c.height < 1) refuse_camera("has less than a pixel; set its width and height");
@@ -171,7 +168,8 @@ void check_camera(const Camera& c) {
     refuse_camera("has a crop window that is not inside its film");
   if (!all_finite(c.to_world) || !all_finite(c.to_camera))
     refuse_camera("looks nowhere; give it a target apart from its eye, and a to_world that can be inverted");
-  if (!is_near(Vec3(c.to_world[3]))) refuse_camera("stands farther than 1e18 units away");
+  if (!(max_abs(Vec3(c.to_world[3])) <= farthest))
+    throw Error(fmt::format("scene: its camera stands farther than {} units away", farthest));
   if (!(std::min(c.plane.x, c.plane.y) > 0 && std::max(c.plane.x, c.plane.y) < infinity))
     refuse_camera("has no view; give it a field of view between 0 and 180 degrees");
   if (!(c.aperture >= 0 && c.aperture < infinity && c.focus > 0 && c.focus < infinity))
@@ -200,7 +198,7 @@ void check_light(const Scene& scene, uint32_t id) {
   check_slot(scene, part, "radiance", light.radiance, true);
   if (!(light.sampling_weight >= 0 && light.sampling_weight < infinity))
     refuse(part, fmt::format("its sampling_weight is {}; give it 0 or more", light.sampling_weight));
-  if (!is_near(light.position)) refuse(part, "stands farther than 1e18 units away");
+  if (!(max_abs(light.position) <= farthest)) refuse(part, fmt::format("stands farther than {} units away", farthest));
   if (!is_finite(light.direction) || light.direction == Vec3(0)) refuse(part, "its direction is none");
   if (light.kind == LightKind::area) {
     check_index(part, "shape", light.shape, scene.shapes, "shapes");

@@ -59,9 +59,9 @@ void set_bounds(Scene& scene) {
   }
   for (const Box& b : instances) most = std::max(most, farthest2(b, scene.center));
   const float radius = std::sqrt(most) * 1.0001f + 1e-5f * max_abs(scene.center);
-  if (!(radius < 1e18f) || !is_finite(scene.center))
-    throw Error(fmt::format("scene: {} reaches farther than 1e18 units from the middle; check its transform",
-                            name_of_farthest(scene, boxes)));
+  if (!(radius < farthest) || !is_finite(scene.center))
+    throw Error(fmt::format("scene: {} reaches farther than {} units from the middle; check its transform",
+                            name_of_farthest(scene, boxes), farthest));
   if (radius > 0) scene.radius = radius;
 }
 

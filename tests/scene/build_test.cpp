@@ -72,7 +72,7 @@ TEST(Build, what_does_not_fit_is_an_error) {
   expect("mesh 0: its triangle 2 has a corner", [](Scene& s) { s.meshes[0].triangles[2].y = 1000; });
   expect("mesh 0: one of its positions is not finite", [&](Scene& s) { s.meshes[0].positions[1].z = nan; });
   expect("shape 1: its to_world is not finite", [&](Scene& s) { add_sphere(s, Vec3(nan), 1, 0); });
-  expect("light 1: stands farther than 1e18", [](Scene& s) {
+  expect("light 1: stands farther than 1e+18", [](Scene& s) {
     add_light(s, LightKind::point, Slot(1.0f));
     s.lights[1].position.x = 1e19f;
   });
@@ -112,7 +112,7 @@ TEST(Build, cameras_that_cannot_be_are_errors) {
   expect("camera looks nowhere", set({1, 2, 3}, {1, 2, 3}, 40));
   expect("camera looks nowhere", set({std::nanf(""), 0, 3}, {0, 0, 0}, 40));
   expect("camera looks nowhere", [](Scene& s) { set_perspective(s.camera, 40, Mat4(0)); });
-  expect("camera stands farther than 1e18", [](Scene& s) { s.camera.to_world[3].y = 1e19f; });
+  expect("camera stands farther than 1e+18", [](Scene& s) { s.camera.to_world[3].y = 1e19f; });
   for (const float fov : {0.0f, -5.0f, 200.0f, 360.0f, infinity, std::nanf("")})
     expect("camera has no view", set({0, 0, 3}, {0, 0, 0}, fov));
   expect("camera has a lens that is none", [](Scene& s) { s.camera.focus = 0; });

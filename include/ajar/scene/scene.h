@@ -113,10 +113,14 @@ struct Scene {
   bool finished = false;  ///< the parts of build.h clear it
 };
 
+/// What may be hit, seen from or lit from is at most so many units away: beyond, the ray tracer's squares of distances
+/// are no numbers.
+inline constexpr float farthest = 1e18f;
+
 /// Computes what is derived (areas, bounds, light choice); call once after building or changing a scene. Throws Error
 /// where parts do not fit (an index that leads nowhere, lists of a mesh or image of other lengths than they say, an
 /// area light and a shape that do not name each other), where a colour of a material or light, or a light's
-/// sampling_weight, is not finite or negative, where something reaches or stands farther than 1e18 units, where the
+/// sampling_weight, is not finite or negative, where something reaches or stands beyond `farthest`, where the
 /// transform of an environment, spot or projector cannot be inverted, for a camera without a view, a lens or a place
 /// for its crop window, and for bsdfs that cannot be (one that is part of itself, an index of refraction below 0).
 void finish(Scene& scene);

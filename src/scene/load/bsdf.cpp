@@ -200,8 +200,9 @@ void principled(Params& p, Material& m) {
   if (has(p, "specular")) {  // Burley 2012: reflectance at normal incidence is 0.08 times this
     const double specular = number(p, "specular", 0.5);
     if (!(specular >= 0 && specular <= 1)) fail(p.loader, p.node, "specular should be from 0 to 1");
-    constexpr double least = 1e-3;  // Mitsuba's in place of 0
-    m.ior = float(2 / (1 - std::sqrt(0.08 * (specular > 0 ? specular : least))) - 1);
+    const double least = has(p, "spec_trans") ? 1e-3 : 0;  // Mitsuba's in place of 0, where light may pass
+    m.ior = float(2 / (1 - std::sqrt(0.08 * std::max(specular, least))) - 1);
+    if (has(p, "eta")) note(p.loader, p.node, "has eta and specular: specular is used");
   }
   if (!(m.ior >= 1e-3f && m.ior <= 1e3f)) fail(p.loader, p.node, "eta should be an index of refraction: 1.5");
 }
@@ -219,8 +220,18 @@ bool comes_first(const std::string& a, const std::string& b) {
   return parts(a) < parts(b);
 }
 
-// The nested bsdfs: as many as asked for, in the order of their names, where one without is called _arg_0, _arg_1 and
-// so on; in version 0.x in that of the file.
+// In the order of their names, as versions from 2 to 3.6 have it: 0.x, and 3.7 and later, take them as the file has
+// them.
+void sort_by_name(Params& p, std::vector<std::pair<std::string, const Node*>>& list) {
+  const auto before = [](const auto& a, const auto& b) { return comes_first(a.first, b.first); };
+  if (!p.loader.document.by_name || std::is_sorted(list.begin(), list.end(), before)) return;
+  std::stable_sort(list.begin(), list.end(), before);
+  note(p.loader, p.node,
+       "its nested bsdfs are taken in the order of their names; a version of 3.7 or later says that "
+       "of the file");
+}
+
+// The nested bsdfs: as many as asked for, where one without a name is called _arg_0, _arg_1 and so on.
 void take_nested(Params& p, Material& m, size_t low, size_t high) {
   std::vector<std::pair<std::string, const Node*>> list;
   for (size_t i = 0; i < p.node.children.size(); ++i) {
@@ -235,9 +246,7 @@ void take_nested(Params& p, Material& m, size_t low, size_t high) {
          fmt::format("needs {} nested bsdf{}, has {}",
                      low == high ? fmt::format("{}", low) : fmt::format("{} to {}", low, high), high == 1 ? "" : "s",
                      list.size()));
-  if (!p.loader.document.old)
-    std::stable_sort(list.begin(), list.end(),
-                     [](const auto& a, const auto& b) { return comes_first(a.first, b.first); });
+  sort_by_name(p, list);
   for (size_t i = 0; i < list.size(); ++i) m.nested[i] = load_bsdf(p.loader, *list[i].second);
 }
 

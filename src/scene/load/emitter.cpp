@@ -205,7 +205,8 @@ DMat4 regular_to_world(Params& p) {
 
 void require_near(const Params& p, const DVec3& at) {
   const double most = std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)});
-  if (!(most <= 1e18)) fail(p.loader, p.node, "it stands farther than 1e18 units away; move it nearer");
+  if (!(most <= farthest))
+    fail(p.loader, p.node, fmt::format("it stands farther than {} units away; move it nearer", farthest));
 }
 
 Mat4 orientation(const DMat4& m) {

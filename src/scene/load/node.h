@@ -30,6 +30,7 @@ struct Document {
   std::vector<uint64_t> sums;  ///< checksums of the texts of the files
   uint64_t content = 0;        ///< checksum of all of them
   bool old = false;            ///< version 0.x, and no to_world in the scene's file: a few defaults differ
+  bool by_name = false;        ///< versions from 2 to 3.6: nested bsdfs come in the order of their names
   /// Folders that a name in other capitals was looked for in, kept by find_file: their names by those in small letters.
   mutable std::map<std::string, std::map<std::string, std::string>> listings;
 };

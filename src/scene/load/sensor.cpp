@@ -152,7 +152,7 @@ void read_view(Params& p, Camera& camera) {
     camera.plane = Vec2(float(tan_x), float(tan_x / aspect * scale.y / scale.x));
   }
   require_near(p, DVec3(m[3]));
-  if (!(std::min(camera.plane.x, camera.plane.y) > 1e-18f && std::max(camera.plane.x, camera.plane.y) < 1e18f))
+  if (!(std::min(camera.plane.x, camera.plane.y) > 1 / farthest && std::max(camera.plane.x, camera.plane.y) < farthest))
     fail(p.loader, p.node, "its to_world stretches the view beyond measure");
   const double x = number(p, "principal_point_offset_x", 0), y = number(p, "principal_point_offset_y", 0);
   if (!(std::abs(x) <= 100 && std::abs(y) <= 100)) fail(p.loader, p.node, "principal_point_offset should be small");

@@ -119,7 +119,11 @@ void cylinder(Params& p, Shape& shape, const MeshPart&) {
   local[3] = DMat4::col_type(p0, 1);
   const DMat4 placed = shape_to_world(p, false);
   shape.flip = boolean(p, "flip_normals", false) != (determinant(placed) < 0);
-  place_quadric(p, shape, placed * local);
+  const DMat4 m = placed * local;
+  place_quadric(p, shape, m);
+  DMat4 section = m;
+  section[2] *= glm::length(DVec3(m[0])) / glm::length(DVec3(m[2]));
+  if (!is_similarity(section)) note(p.loader, p.node, "to_world stretches it across or shears it: it is not round");
 }
 
 void rectangle(Params& p, Shape& shape, const MeshPart&) {

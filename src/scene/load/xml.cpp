@@ -323,9 +323,17 @@ void read_children(Reader& r, const Source& s, const pugi::xml_node& xml, Node& 
   }
 }
 
+// 3.6.4 is before 3.7, and before 3.10.
+bool before_3_7(std::string_view version) {
+  if (!version.starts_with("3.")) return version.starts_with("2.") || version == "3";
+  const std::string_view minor = version.substr(2, version.find('.', 2) - 2);
+  return minor.size() == 1 && minor < "7";
+}
+
 void read_version(Document& document) {
   const std::string* version = attribute(document.root, "version");
   document.old = version != nullptr && version->starts_with("0.");
+  document.by_name = version != nullptr && before_3_7(*version);
   if (version != nullptr && version->find_first_of("0123456789") == 0) return;
   const std::string wrong =
       version ? fmt::format("\"{}\" is not a version", shortened(*version)) : "needs version=\"...\"";
@@ -340,7 +348,7 @@ void heed_spelling(Reader& r, const Source& s) {
     return name == "to_world" && (tag == "transform" || tag == "animation");
   });
   if (!r.document.old || !moved) return;
-  r.document.old = false;
+  r.document.old = false, r.document.by_name = true;
   r.document.notes.push_back(one_line(
       fmt::format("{}:{}: version {} does not know to_world: read as a scene of version 2", r.document.files[s.file],
                   line_at(s, moved.offset_debug()), shortened(*attribute(r.document.root, "version")))));

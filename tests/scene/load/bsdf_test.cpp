@@ -187,7 +187,11 @@ TEST(Bsdf, Principled) {
       bsdf("principled", number("main_specular_sampling_rate", 2) + number("diffuse_reflectance_sampling_rate", 2)));
   EXPECT_FALSE(says(hinted.notes, "sampling_rate"));
   EXPECT_SAYS(error_of(bsdf("principled", number("specular", -1))), "specular should be");
-  EXPECT_NEAR(last(bsdf("principled", number("specular", 0))).ior, 1.01805, 1e-5);  // as of 0.001
+  EXPECT_EQ(last(bsdf("principled", number("specular", 0))).ior, 1);
+  EXPECT_NEAR(last(bsdf("principled", number("specular", 0) + number("spec_trans", 0.5))).ior, 1.01805,
+              1e-5);  // of 0.001
+  EXPECT_TRUE(
+      says(load_inside(bsdf("principled", number("specular", 0.5) + number("eta", 2))).notes, "specular is used"));
   EXPECT_FLOAT_EQ(last(bsdf("principled", number("eta", 0.67))).ior, 0.67f);  // a bubble
   for (const double eta : {0.0, 1e-4, 2e3})
     EXPECT_SAYS(error_of(bsdf("principled", number("eta", eta))), "eta should be") << eta;
@@ -235,7 +239,12 @@ TEST(Bsdf, Blend) {
   };
   EXPECT_EQ(first("first", "3.0.0"), MaterialKind::diffuse);
   EXPECT_EQ(first("A", "3.0.0"), MaterialKind::plastic);
-  EXPECT_EQ(first("first", "0.6.0"), MaterialKind::plastic);
+  for (const char* version : {"0.6.0", "3.7.0", "3.10.1", "4.0.0"})  // as the file has them
+    EXPECT_EQ(first("first", version), MaterialKind::plastic) << version;
+  for (const char* version : {"2.0.0", "3.6.4", "3"})
+    EXPECT_EQ(first("first", version), MaterialKind::diffuse) << version;
+  EXPECT_TRUE(says(load_inside(ten).notes, "in the order of their names"));
+  EXPECT_FALSE(says(load_inside(ten, {}, "3.7.0").notes, "in the order of their names"));
   EXPECT_SAYS(error_of(bsdf("blendbsdf", bsdf("diffuse"))), "needs 2 nested bsdfs, has 1");
 }
 

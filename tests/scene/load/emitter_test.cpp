@@ -73,7 +73,7 @@ TEST(Emitters, BeyondWhatNumbersHold) {
 TEST(Emitters, FartherThanRaysGo) {
   const std::string far = "<transform name='to_world'><translate x='1e19'/></transform>";
   for (const char* type : {"point", "spot", "projector"})
-    EXPECT_SAYS(error_of(emitter(type, far)), "stands farther than 1e18 units away; move it nearer");
+    EXPECT_SAYS(error_of(emitter(type, far)), "stands farther than 1e+18 units away; move it nearer");
 }
 
 // Maps of bright lights have negative texels after resizing, and worse after mistakes.

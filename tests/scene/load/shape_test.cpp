@@ -111,6 +111,12 @@ TEST(Shapes, DiskAndCylinder) {
     EXPECT_RGB(Vec3(s.shapes[0].to_world[0]), 1, 0, 0, 0);  // where u begins
   }
   EXPECT_SAYS(error_of(shape("cylinder", "<point name='p0' z='1'/>")), "the same point");
+  const auto is_noted = [](const std::string& scale) {
+    const std::string to_world = fmt::format("<transform name='to_world'><scale {}/></transform>", scale);
+    return says(load_inside(shape("cylinder", to_world)).notes, "it is not round");
+  };
+  EXPECT_TRUE(is_noted("x='1.2' y='.4'"));
+  EXPECT_FALSE(is_noted("x='2' y='2' z='7'"));
 }
 
 TEST(Shapes, MeshFiles) {
@@ -343,7 +349,7 @@ TEST(Shapes, HintsForDerivativesAreNoStrays) {
 TEST(Shapes, FarAwayIsAnError) {
   const std::string move = "<transform name='to_world'><translate x='1e30'/></transform>";
   EXPECT_SAYS(error_of(shape("sphere", "") + shape("sphere", "<point name='center' x='1e30'/>")),
-              "test.xml: scene: the shape \"sphere:2\" reaches farther than 1e18 units");
+              "test.xml: scene: the shape \"sphere:2\" reaches farther than 1e+18 units");
   EXPECT_SAYS(error_of(shape("sphere", "") + "<shape type='cube' id='great'>" + move + "</shape>"),
               "scene: the shape \"great\" reaches farther");
   EXPECT_SAYS(error_of("<shape type='shapegroup' id='g'>" + shape("cube", "") + "</shape>" +
