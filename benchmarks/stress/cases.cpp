@@ -49,34 +49,38 @@ Scene moved_room(float scale, const Vec3& shift) {
   return finished(std::move(scene));
 }
 
-// Rooms of 2 x 2 x 2 in a row along x, each joined to the next by a doorway, nearer and farther in turns. The light is
-// in the last, the camera in the first.
-Scene corridor(int rooms) {
+// Rooms of 2 x 2 x 2 in a row along x, each joined to the next by a doorway. The light is in the last, the camera in
+// the first. Doorways are nearer and farther in turns, or in line: then the camera looks through all of them, since of
+// a light that has to go round so many corners nothing would be left.
+Scene corridor(int rooms, bool in_line) {
   Scene scene;
   scene.filter = make_filter(FilterKind::box);
   const uint32_t grey = add_diffuse(scene, Rgb(0.8f)), black = add_diffuse(scene, Rgb(0));
   const float length = 2 * float(rooms);
   add_box(scene, {0, 0, 0}, {length, 2, 2}, grey, true);
   for (int i = 1; i < rooms; ++i) {
-    const float x = 2 * float(i), z = i % 2 ? 0.2f : 1.2f;
+    const float x = 2 * float(i), z = in_line ? 0.7f : i % 2 ? 0.2f : 1.2f;
     add_box(scene, {x - 0.02f, -0.1f, -0.1f}, {x + 0.02f, 2.1f, z}, grey);
     add_box(scene, {x - 0.02f, -0.1f, z + 0.6f}, {x + 0.02f, 2.1f, 2.1f}, grey);
   }
   add_area_light(scene, add_quad(scene, {length - 1.3f, 1.98f, 0.7f}, {0.6f, 0, 0}, {0, 0, 0.6f}, black), Rgb(20));
-  set_camera(scene, {0.1f, 1, 0.5f}, {2, 0.9f, 1}, 70, side, side);
+  if (in_line)
+    set_camera(scene, {0.1f, 1, 1}, {length, 1, 1}, 140 / length, side, side);
+  else
+    set_camera(scene, {0.1f, 1, 0.5f}, {2, 0.9f, 1}, 70, side, side);
   return finished(std::move(scene));
 }
 
-// Two rooms and a wall between them with a door, so far open, of which a gap is all that light finds. The leaf is
-// 1 m wide; shut, it lies in its frame.
+// Two rooms and a wall between them with a door, so far open, of which a gap is all that light finds, in a wall no
+// thicker than that. The leaf is 1 m wide; shut, it lies in its frame.
 Scene door(double degrees) {
   Scene scene;
   scene.filter = make_filter(FilterKind::box);
   const uint32_t grey = add_diffuse(scene, Rgb(0.7f)), black = add_diffuse(scene, Rgb(0));
   add_box(scene, {0, 0, -2}, {2, 2, 2}, grey, true);
-  const float gap = float(std::sin(degrees * std::numbers::pi / 180));
-  add_box(scene, {-0.1f, -0.1f, -0.02f}, {0.7f, 2.1f, 0.02f}, grey);
-  add_box(scene, {gap > 0 ? 0.7f + gap : 0.6f, -0.1f, -0.02f}, {2.1f, 2.1f, 0.02f}, grey);
+  const float gap = float(std::sin(degrees * std::numbers::pi / 180)), thick = gap > 0 ? std::min(gap, 0.02f) : 0.02f;
+  add_box(scene, {-0.1f, -0.1f, -thick}, {0.7f, 2.1f, thick}, grey);
+  add_box(scene, {gap > 0 ? 0.7f + gap : 0.6f, -0.1f, -thick}, {2.1f, 2.1f, thick}, grey);
   const float strength = gap > 0 ? 4 / gap : 20;  // so that all images are about as bright
   add_area_light(scene, add_quad(scene, {0.7f, 1.98f, -1.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, black), Rgb(strength));
   set_camera(scene, {1.8f, 1, 1.8f}, {0.8f, 0.8f, 0}, 70, side, side);
@@ -158,6 +162,39 @@ Scene beside(float bright) {
   return finished(std::move(scene));
 }
 
+// A box of 2 x 2 x 2 without a front, about x, lit from its ceiling.
+void add_alcove(Scene& scene, float x, float radiance) {
+  const uint32_t grey = add_diffuse(scene, Rgb(0.6f)), black = add_diffuse(scene, Rgb(0));
+  add_box(scene, {x - 1.05f, -1.05f, -1.05f}, {x + 1.05f, 1.05f, -1}, grey);
+  add_box(scene, {x - 1.05f, -1.05f, -1}, {x + 1.05f, -1, 1}, grey);
+  add_box(scene, {x - 1.05f, 1, -1}, {x + 1.05f, 1.05f, 1}, grey);
+  add_box(scene, {x - 1.05f, -1, -1}, {x - 1, 1, 1}, grey);
+  add_box(scene, {x + 1, -1, -1}, {x + 1.05f, 1, 1}, grey);
+  add_area_light(scene, add_quad(scene, {x - 0.4f, 0.98f, -0.4f}, {0.8f, 0, 0}, {0, 0, 0.8f}, black), Rgb(radiance));
+}
+
+// Two such boxes in one image, neither of which the other's light comes to.
+Scene in_one_image(float faint, float bright) {
+  Scene scene;
+  scene.filter = make_filter(FilterKind::box);
+  add_alcove(scene, -1.1f, faint), add_alcove(scene, 1.1f, bright);
+  set_camera(scene, {0, 0, 5}, Vec3(0), 56, 2 * side, side);
+  return finished(std::move(scene));
+}
+
+// A floor of one triangle and nothing else but a lamp.
+Scene one_triangle() {
+  Scene scene;
+  scene.filter = make_filter(FilterKind::box);
+  Mesh mesh;
+  mesh.positions = {{-1, 0, 1}, {1, 0, 1}, {0, 0, -1}};
+  mesh.triangles = {{0, 1, 2}};
+  add_mesh(scene, std::move(mesh), add_diffuse(scene, Rgb(0.7f)));
+  scene.lights[add_light(scene, LightKind::point, Rgb(3))].position = {0.2f, 1, 0.1f};
+  set_camera(scene, {0, 1.5f, 2.5f}, Vec3(0), 50, side, side);
+  return finished(std::move(scene));
+}
+
 // A ball of light of the radius, or the point that it is from afar.
 Scene spark(float radius) {
   Scene scene = unlit_room();
@@ -171,9 +208,11 @@ Scene spark(float radius) {
   return finished(std::move(scene));
 }
 
+// The room fills the film's height.
 Scene film(int width, int height) {
   Scene scene = cornell(side);
-  set_camera(scene, {0, 0, 4.2f}, Vec3(0), 36, width, height);
+  const float half = std::tan(18 * pi / 180) * std::min(1.0f, float(width) / float(height));
+  set_camera(scene, {0, 0, 4.2f}, Vec3(0), 2 * std::atan(half) * 180 / pi, width, height);
   return finished(std::move(scene));
 }
 
@@ -189,6 +228,44 @@ Scene glass_in_sky(float ior, bool box) {
     add_sphere(scene, Vec3(0), 1, glass);
   add_light(scene, LightKind::constant, Rgb(1));
   set_camera(scene, {0, 0, 4}, Vec3(0), 45, side, side);
+  return finished(std::move(scene));
+}
+
+Camera parallel(const Vec3& eye, const Vec3& target, float half) {
+  Camera c;
+  c.kind = CameraKind::orthographic;
+  c.to_world = look_at(eye, target), c.to_camera = Mat4(glm::inverse(glm::dmat4(c.to_world)));
+  c.plane = Vec2(half);
+  set_size(c, side, side);
+  return c;
+}
+
+// A bar of glass, cut at 45 degrees at both ends, before a lamp of radiance 1. What comes in through one end, straight,
+// is thrown between the sides by total internal reflection, 2 hops + 1 times, and leaves through the other; no hops: a
+// pane. Parts go to and fro between the ends, and of all of it 2n / (n^2 + 1) arrives.
+Scene glass_bar(float ior, int hops) {
+  Scene scene;
+  scene.filter = make_filter(FilterKind::box);
+  const uint32_t glass = add_example(scene, MaterialKind::dielectric), black = add_diffuse(scene, Rgb(0));
+  scene.materials[glass].ior = ior;
+  const float end = 2 * float(hops) + 2;
+  if (hops == 0) {
+    add_box(scene, {-2, -2, -0.3f}, {2, 2, 0.3f}, glass);
+    add_area_light(scene, add_quad(scene, {-2, -2, -1}, {4, 0, 0}, {0, 4, 0}, black), Rgb(1));
+    scene.camera = parallel({0, 0, 3}, Vec3(0), 0.5f);
+    return finished(std::move(scene));
+  }
+  Mesh bar;
+  for (const float z : {-1.0f, 1.0f})
+    bar.positions.insert(bar.positions.end(), {{0, 0, z}, {end, 0, z}, {end - 1, 1, z}, {1, 1, z}});
+  bar.triangles = {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}};
+  for (const uint32_t a : {0u, 1u, 2u, 3u}) {
+    const uint32_t b = (a + 1) % 4;
+    bar.triangles.push_back({a, b, b + 4}), bar.triangles.push_back({a, b + 4, a + 4});
+  }
+  add_mesh(scene, std::move(bar), glass);
+  add_area_light(scene, add_quad(scene, {end + 1, 0.5f, -1.5f}, {0, 0, 3}, {-1.5f, 1.5f, 0}, black), Rgb(1));
+  scene.camera = parallel({-1.5f, 2.5f, 0}, {0.5f, 0.5f, 0}, 0.4f);
   return finished(std::move(scene));
 }
 
@@ -243,12 +320,15 @@ void add_stiff(List& l) {
   Case& endless = l.add("albedo 1, no limit", [] { return grey_furnace(1); });
   endless.judge.clear(), endless.passes = 2;
   l.group = "corridor";
-  for (const int n : {1, 3, 6, 50}) l.add(fmt::format("{} rooms", n), [n] { return corridor(n); }).judge = "bdpt";
+  for (const int n : {1, 3, 6}) l.add(fmt::format("{} rooms", n), [n] { return corridor(n, false); }).judge = "bdpt";
+  Case& fifty = l.add("50 rooms, doors in line", [] { return corridor(50, true); });
+  fifty.judge = "bdpt", fifty.faint = 1e-3;
   l.group = "door";
   for (const double d : {20.0, 5.0, 1.0, 0.1, 0.01}) {
     Case& c = l.add(shown(d) + " degrees", [d] { return door(d); });
     c.judge = "bdpt";
-    c.light = d > 0.5;  // one path in millions gets through
+    c.light = d > 0.5;  // one path in millions gets through, and meets the lens
+    if (d < 2) c.passes = 64;
   }
   l.add("shut", [] { return door(0); }).answer = 0;
 }
@@ -279,6 +359,7 @@ void add_sizes(List& l) {
   }
   l.group = "triangles";
   l.add("12 a box", plain);
+  l.add("one", one_triangle);
   for (const int n : {1000, 100000})
     l.add(fmt::format("{} slivers 1:{}", 2 * n, n), [n] { return strips(n); }).twin = plain;
   for (const uint32_t n : {70u, 700u, 2200u}) {
@@ -299,13 +380,17 @@ void add_lights(List& l) {
   both.twin = [] { return beside(0); };
   both.light = false;                    // it begins at lamps as they have power: once in 1e16 at the faint one
   both.blind = {"photon", "plain-vpl"};  // so do these
+  Case& seen = l.add("1e-8 and 1e8 in one image", [] { return in_one_image(1e-8f, 1e8f); });
+  seen.light = false, seen.blind = both.blind;
   l.group = "lights";
   l.add("1", [] { return many_lights(1, 1, side); });
   for (const int n : {100, 100000}) l.add(fmt::format("{}", n), [n] { return many_lights(n, 1, side); });
   l.add("none", [] { return finished(unlit_room()); }).answer = 0;
   l.add("one that is black", [] { return bright_room(0); }).answer = 0;
-  for (const double r : {1e-3, 1e-6})
-    l.add("ball of radius " + shown(r), [r] { return spark(float(r)); }).twin = [] { return spark(0); };
+  for (const double r : {1e-3, 1e-6}) {
+    Case& c = l.add("ball of radius " + shown(r), [r] { return spark(float(r)); });
+    c.twin = [] { return spark(0); }, c.passes = 32;
+  }
   l.group = "film";
   l.add("24 x 24", plain);
   Case& dot = l.add("1 x 1", [] { return film(1, 1); });
@@ -338,6 +423,15 @@ void add_materials(List& l) {
     }
   Case& deltas = l.add("glass and mirrors alone", deltas_in_sky);
   deltas.answer = 1, deltas.light = false;
+  l.group = "glass before a lamp";
+  for (const double n : {1.5, 1.0001, 1.01, 3.0}) {
+    Case& c = l.add(fmt::format("pane of index {:g}", n), [n] { return glass_bar(float(n), 0); });
+    c.answer = 2 * n / (n * n + 1), c.light = false;
+  }
+  for (const int hops : {1, 32}) {
+    Case& c = l.add(fmt::format("{} total reflections", 2 * hops + 1), [hops] { return glass_bar(1.5f, hops); });
+    c.answer = 3 / 3.25, c.light = false;
+  }
   l.group = "chain of mirrors";
   for (const int n : {1, 16, 64}) l.add(fmt::format("{}", n), [n] { return mirror_chain(n, side); }).light = false;
   l.group = "surfaces";

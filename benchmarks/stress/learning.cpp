@@ -26,13 +26,13 @@ Scene with_radiance(const Rgb& radiance) {
 }
 
 // What guided-bdpt learns of a scene.
-StoredFields learned(const Scene& scene, uint32_t passes) {
+StoredFields learned(const Scene& scene, uint32_t passes, const LearnOptions& learn = {}) {
   RenderOptions o;
   o.integrator = "guided-bdpt";
   o.sampler = SamplerKind::independent;
   o.seed = 77;
   o.spp = passes;
-  o.learn.least_contrast = 2;
+  o.learn = learn, o.learn.least_contrast = 2;
   const Accel accel(scene);
   RenderState state = start_render(scene, o);
   render(scene, accel, o, state, nullptr);
@@ -71,6 +71,41 @@ StoredFields lying() {
   return stored;
 }
 
+// Bytes that so many passes of the usual scene find room for one cell in. A cell takes as much as a fifth of what the
+// fields take without any, and is learned as long as any of it is left.
+size_t room_for_one() {
+  static const size_t room = [] {
+    const double none = double(bytes(start_fields(usual(), 1)));
+    for (double memory = none; memory < 4 * none; memory *= 1.01) {
+      LearnOptions o;
+      o.memory = size_t(memory);
+      if (!learned(usual(), 8, o).fields.cells.empty()) return o.memory;
+    }
+    return size_t(0);
+  }();
+  return room;
+}
+
+void with_room_for_a_million(LearnOptions& o) {
+  o.structure = Structure::probes, o.memory = size_t(2) << 30;
+  o.train = 2;
+}
+
+// Each probe's cell is there from the beginning, and knows nothing.
+StoredFields million_cells() {
+  const Scene scene = usual();
+  LearnOptions o;
+  with_room_for_a_million(o);
+  const Camera& c = scene.camera;
+  const Fields none = start_fields(scene, double(c.crop_width) * c.crop_height, o);
+  Sightings sightings;
+  for (const Probe& probe : none.table.probes)
+    if (const CellKey key = find(none.table, probe.p, probe.n).missing)
+      for (int i = 0; i < 4; ++i) record_missing(sightings, key, probe.n);
+  const Training nothing = start_training(none);
+  return {learn(none, nothing, sightings, {0, 0}, o, &scene.light_tree), scene_key(scene), 0};
+}
+
 void freeze(LearnOptions& o) { o.train = 2; }
 
 std::string scratch(const char* name) {
@@ -98,9 +133,9 @@ Scene poisoned(float value) {
   return scene;
 }
 
-Scene with_foreign_fields() {
+Scene with_fields_of(const Scene& other) {
   Scene scene = usual();
-  load_back(learned(cornell(8), 8), scene);
+  load_back(learned(other, 8), scene);
   return scene;
 }
 
@@ -128,11 +163,13 @@ void add_rates(std::vector<Case>& all) {
   };
   add("as usual", nullptr);
   add("no room for a cell", [](LearnOptions& o) { o.memory = 1; });
-  add("one cell", [](LearnOptions& o) { o.memory = bytes(start_fields(usual(), 1)); });
+  all.back().most_cells = 0;
+  add("one cell", [](LearnOptions& o) { o.memory = room_for_one(); });
+  all.back().least_cells = all.back().most_cells = 1;
   add("cells divided at once, 1 GB", [](LearnOptions& o) { o.divide_cell = 1, o.memory = size_t(1) << 30; });
-  add("a million cells", [](LearnOptions& o) { o.structure = Structure::grid, o.memory = size_t(16) << 30; });
-  all.back().make = [] { return two_rooms(40, 180); };
-  all.back().large = true;
+  add("a million cells", with_room_for_a_million);
+  all.back().fields = million_cells;
+  all.back().large = true, all.back().passes = 4, all.back().least_cells = 1000000;
   add("strata divided at once", [](LearnOptions& o) { o.divide_stratum = 1e-6f; });
   add("older evidence forgotten", [](LearnOptions& o) { o.forget = 0; });
   add("older evidence kept", [](LearnOptions& o) { o.forget = 1; });
@@ -144,6 +181,8 @@ void add_rates(std::vector<Case>& all) {
     all.back().tails = true, all.back().passes = 32;
     all.back().limit = mix > 0.999f;
   }
+  add("grid", [](LearnOptions& o) { o.structure = Structure::grid; });
+  add("probes", [](LearnOptions& o) { o.structure = Structure::probes; });
   add("max rule", [](LearnOptions& o) { o.rule = Rule::max; });
   add("returns", [](LearnOptions& o) { o.rule = Rule::returned; });
 }
@@ -166,17 +205,20 @@ void add_wrong_fields(std::vector<Case>& all) {
 }
 
 void add_refused(std::vector<Case>& all) {
-  const auto add = [&](std::string name, std::function<Scene()> make) {
+  const auto add = [&](std::string name, std::string refused, std::function<Scene()> make) {
     all.push_back({"bad input", std::move(name), std::move(make)});
-    all.back().refused = true;
+    all.back().refused = std::move(refused);
+    if (all.back().refused.empty()) all.back().judge.clear();
   };
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  add("fields with NaN", [nan] { return poisoned(nan); });
-  add("fields with infinity", [] { return poisoned(infinity); });
-  add("fields below zero", [] { return poisoned(-1); });
-  add("fields of another scene", with_foreign_fields);
-  add("texture with NaN", [nan] { return with_texel(nan); });
-  add("texture with infinity", [] { return with_texel(infinity); });
+  add("fields that are sound", "", [] { return with_fields_of(usual()); });
+  add("fields with NaN", "damaged", [nan] { return poisoned(nan); });
+  add("fields with infinity", "damaged", [] { return poisoned(infinity); });
+  add("fields below zero", "damaged", [] { return poisoned(-1); });
+  add("fields of another scene", "another scene", [] { return with_fields_of(cornell(8)); });
+  add("texture that is sound", "", [] { return with_texel(0.25f); });
+  add("texture with NaN", "holds nan", [nan] { return with_texel(nan); });
+  add("texture with infinity", "holds inf", [] { return with_texel(infinity); });
 }
 
 }  // namespace

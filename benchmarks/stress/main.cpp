@@ -37,9 +37,9 @@ struct Trial {
 };
 
 std::string pack(const Outcome& o) {
-  const Json j = {{"width", o.width},        {"height", o.height}, {"runs", o.runs},   {"refusal", o.refusal},
-                  {"rejected", o.rejected},  {"replay", o.replay}, {"paths", o.paths}, {"cpu", o.cpu_seconds},
-                  {"fields", o.field_bytes}, {"noise", o.noise}};
+  const Json j = {{"width", o.width},       {"height", o.height}, {"runs", o.runs},   {"refusal", o.refusal},
+                  {"rejected", o.rejected}, {"replay", o.replay}, {"paths", o.paths}, {"cpu", o.cpu_seconds},
+                  {"cells", o.cells},       {"noise", o.noise}};
   std::string bytes;
   Json::to_cbor(j, bytes);
   return bytes;
@@ -50,7 +50,7 @@ Outcome unpack(const std::string& bytes) {
   Outcome o;
   j.at("width").get_to(o.width), j.at("height").get_to(o.height), j.at("runs").get_to(o.runs);
   j.at("refusal").get_to(o.refusal), j.at("rejected").get_to(o.rejected), j.at("replay").get_to(o.replay);
-  j.at("paths").get_to(o.paths), j.at("cpu").get_to(o.cpu_seconds), j.at("fields").get_to(o.field_bytes);
+  j.at("paths").get_to(o.paths), j.at("cpu").get_to(o.cpu_seconds), j.at("cells").get_to(o.cells);
   j.at("noise").get_to(o.noise);
   return o;
 }
@@ -127,13 +127,19 @@ struct Table {
 
 double seconds_per_path(const Outcome& o) { return o.paths > 0 ? o.cpu_seconds / o.paths : 0; }
 
+std::string what_is_right(const Case& c, const std::string& integrator, const Verdict& v) {
+  if (c.answer == 0) return "black";
+  if (c.answer < 0 && c.judge.empty()) return "ends";
+  return judges_itself(c, integrator) ? "judge" : fmt::format("{:.2f} ({:g} %)", v.p, 100 * v.noticed);
+}
+
 std::string cell(Table& table, const Case& c, const std::string& integrator, const Trial& t, const Verdict& v) {
   const Outcome& o = t.outcome;
   if (!t.death.empty()) return ++table.wrong, fmt::format("**{}**", t.death);
   if (!v.ok && c.limit) return "limit";
-  if (!v.ok) return ++table.wrong, fmt::format("**wrong** (p {:.0e})", v.p);
-  if (c.refused) return "refused";
-  std::string text = c.answer == 0 ? "black" : c.judge.empty() && c.answer < 0 ? "ends" : fmt::format("{:.2f}", v.p);
+  if (!v.ok) return ++table.wrong, v.noticed == infinity ? "**blind**" : fmt::format("**wrong** (p {:.0e})", v.p);
+  if (!c.refused.empty()) return "refused";
+  std::string text = what_is_right(c, integrator, v);
   const auto usual = table.ordinary.find(integrator);
   if (usual == table.ordinary.end()) {
     table.ordinary[integrator] = o;
@@ -153,7 +159,8 @@ void begin_group(const Arguments& a, Table& table, const std::string& group) {
 }
 
 void add_row(const Arguments& a, Table& table, const Case& c) {
-  const Trial right = apart(a.limit, [&] { return reference(c, 2 * a.batches); });
+  Trial right = apart(a.limit, [&] { return reference(c, 2 * a.batches); });
+  if (!right.death.empty()) right.outcome.refusal = right.death;
   table.text += fmt::format("| {} |", c.name);
   double megabytes = 0;
   uint64_t rejected = 0;
@@ -168,7 +175,7 @@ void add_row(const Arguments& a, Table& table, const Case& c) {
     megabytes = std::max(megabytes, t.megabytes), rejected += t.outcome.rejected;
     if (!a.quiet)
       fmt::print(stderr, "{}, {}, {}: {:.1f} s, p {:.2g} {}{}{}\n", c.group, c.name, integrator, t.outcome.cpu_seconds,
-                 v.p, v.message, c.refused ? t.outcome.refusal : "", t.death);
+                 v.p, v.message, c.refused.empty() ? "" : t.outcome.refusal, t.death);
     if (!v.ok) save_pictures(a, c, integrator, t.outcome, right.outcome);
   }
   table.text += fmt::format(" {:.0f} | {} |\n", megabytes, rejected);

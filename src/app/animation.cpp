@@ -41,7 +41,8 @@ std::string files_key(const Scene& scene) { return fmt::format("files with check
 bool is_done(Animation& a, int frame) {
   const std::string path = frame_name(a.pattern, frame);
   if (!is_there(path)) return false;
-  const Picture image = read_frame(path);
+  // What is stored as half is rounded, by a part in 2048 at most; all else comes back as it was.
+  const Picture image = read_frame(path, a.arguments.half ? 0x1p-11 : 0);
   const Metadata metadata = read_metadata(path);
   const auto found = metadata.find("ajar:frame");
   const std::shared_ptr<const Scene> scene = load_frame(a.shooting, frame);
@@ -56,6 +57,18 @@ bool is_done(Animation& a, int frame) {
                               ? "was made otherwise: " + difference(*there, here)
                               : "is of another animation, or of other options";
   throw Error(fmt::format("{}: {}; remove it, or write elsewhere", path, why));
+}
+
+// Every frame that is there is looked at, and its scene loaded, which may take long: told now and then.
+void find_what_is_left(Animation& a) {
+  const FrameRange& r = a.shooting.timeline.frames;
+  double told = wall_seconds();
+  for (int f = r.first; f <= r.last; ++f) {
+    if (!is_done(a, f)) a.to_do.push_back(f);
+    if (a.arguments.quiet || wall_seconds() - told < 5) continue;
+    told = wall_seconds();
+    say(stderr, "ajar: note: looked at frame {} of {} to {}\n", f, r.first, r.last);
+  }
 }
 
 // What would stand in the way of the files to come.
@@ -193,9 +206,7 @@ Animation prepare(const AnimateArguments& arguments) {
   const fs::path folder = fs::path(frame_name(a.pattern, 0)).parent_path();
   a.folder = folder.empty() ? "." : folder.string();
   if (!arguments.video.empty()) check_file(arguments.video);
-  const FrameRange& r = a.shooting.timeline.frames;
-  for (int f = r.first; f <= r.last; ++f)
-    if (!is_done(a, f)) a.to_do.push_back(f);
+  find_what_is_left(a);
   if (!a.to_do.empty()) check_outputs(a);
   check_figures(figures_stem(a));
   look_ahead(a);

@@ -52,7 +52,8 @@ FrameFigures measure_frame(const std::string& path, const Timeline& timeline, in
   FrameFigures f;
   f.frame = frame;
   f.parameters = parameters_at(timeline, frame);
-  if (const auto time = time_at(timeline, frame)) f.parameters["time"] = fmt::format("{:.9g}", *time);
+  if (const auto time = time_at(timeline, frame))  // of the scene: a parameter may be called so too
+    f.parameters[f.parameters.count("time") ? "scene_time" : "time"] = fmt::format("{:.9g}", *time);
   const Metadata metadata = frame_metadata(path);
   f.seconds = number_or(metadata, "ajar:seconds", NAN);
   f.cpu_seconds = number_or(metadata, "ajar:cpu_seconds", NAN);
@@ -83,12 +84,16 @@ std::string frame_name(const FramePattern& p, int frame) {
   return fmt::format("{}{:0{}}{}", p.before, frame, p.digits, p.after);
 }
 
-Picture read_frame(const std::string& path) {
+Picture read_frame(const std::string& path, double slack) {
+  Picture image;
   try {
-    return select(read_picture(path), {"R", "G", "B"});
+    image = select(read_picture(path), {"R", "G", "B"});
   } catch (const Error&) {
     throw damaged(path);
   }
+  const double mean = mean_of(image), told = number_or(frame_metadata(path), "ajar:mean", mean);
+  if (slack < infinity && !(std::abs(mean - told) <= slack * std::abs(told))) throw damaged(path);
+  return image;
 }
 
 std::optional<double> time_at(const Timeline& t, int frame) {

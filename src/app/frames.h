@@ -53,8 +53,9 @@ Stage set_up(Shooting& shooting, int frame, const Stage* before);
 /// "door=16.3  time=0.25"
 std::string describe(const Timeline& timeline, int frame);
 
-/// The image of a finished frame. Throws Error, which says what to do about a damaged one.
-Picture read_frame(const std::string& path);
+/// The image of a finished frame. Throws Error, which says what to do about a damaged one: that cannot be read, or
+/// whose mean is another than it tells of itself, relative to that by more than slack.
+Picture read_frame(const std::string& path, double slack = infinity);
 
 /// The newest carried fields in a folder that belong to this key and to no frame after the given one, and suit.
 std::optional<Carried> find_carried(const std::string& folder, const std::string& key, int last,

@@ -128,7 +128,8 @@ void add_options(CLI::App& command, RenderArguments& arguments) {
                 "(default: the scene's spp, else 64)")
       ->check(whole(1, 1 << 30));
   c->add_option("--time", a->time, "wall time to render: 90s, 5m, 1h; with --resume, what was before counts");
-  c->add_option("--cpu-time", a->cpu_time, "CPU time of all threads to render");
+  c->add_option("--cpu-time", a->cpu_time,
+                "CPU time of all threads to render; as with --time, one whole pass is rendered however long it takes");
   c->add_option("--noise", a->noise, "relMSE to stop at, as estimated without a reference: 0.01");
   c->add_option("--seed", a->seed, "another seed, other noise (default 0)")->check(whole(0, ~uint64_t(0)));
   add_threads(*c, a->threads);

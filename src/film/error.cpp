@@ -44,7 +44,7 @@ glm::dvec3 halves_apart(const Film& film, size_t i, const glm::dvec3& mean) {
 
 // Mean over the channels of the squared error over that of the true value. A sample that makes a pixel wrong makes it
 // bright too, and must not hide its error by that: so far as the passes disagree about the pixel, the neighbours have a
-// say. epsilon: what a square is divided by at least.
+// say, within what the passes leave no doubt of. epsilon: what a square is divided by at least.
 double pixel_error(const Film& film, const std::vector<glm::dvec3>& mean, double epsilon, int x, int y) {
   const size_t i = size_t(y) * film.width + x;
   const double n = film.passes, a = (film.passes + 1) / 2, b = film.passes / 2;
@@ -54,7 +54,8 @@ double pixel_error(const Film& film, const std::vector<glm::dvec3>& mean, double
   for (int c = 0; c < 3; ++c) {
     const double m = mean[i][c], square = apart[c] * apart[c] * a * b / (n * n);  // (E1)
     const double trust = m * m > 0 ? m * m / (m * m + 20 * v[c]) : 0;             // (E2)
-    const double dim = std::min(m * m, near[c] * near[c]);
+    const double sure = std::max(m - 2 * std::sqrt(v[c]), 0.0);
+    const double dim = std::max(std::min(m * m, near[c] * near[c]), sure * sure);
     sum += square * (trust / (m * m + epsilon) + (1 - trust) / (dim + epsilon));  // (E3)
   }
   return sum / 3;

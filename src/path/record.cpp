@@ -46,7 +46,7 @@ void record_segment(const Fields& fields, Training& training, const Vertex& a, c
   const Vec3 d = -b.guide.wo;
   End from = end_of(fields, a, d, side), to = end_of(fields, b, d, side, passed);
   if (from.cell == none || !(from.cosine > 1e-4f) || !(to.cosine > 1e-4f)) return;
-  if (to.cell == none && !passes(b.guide) && !(to.q > 0)) return;
+  if (to.cell == none && connectable(b.guide) && !(to.q > 0)) return;  // what it scatters is not known yet
   const double pdf = b.own * b.distance2 / to.cosine;
   const double back = back_density(b);
   if (from.own + from.other <= 0) from.own = 1;
@@ -80,10 +80,11 @@ void record_escape(const Fields& fields, Training& training, const Subpath& subp
   End from = end_of(fields, a, e.d, side);
   if (from.cell == none || a.delta || !(from.cosine > 1e-4f)) return;
   if (from.own <= 0) from.own = 1;
-  const float weight = weight_at(from, from.own * double(e.pdf) / from.cosine);
+  const bool one = fields.rule == Rule::returned;  // as in record_return
+  const float weight =
+      one ? float(from.cosine * inv_pi / e.pdf) : weight_at(from, from.own * double(e.pdf) / from.cosine);
   const FieldRecord records[] = {{Side::camera, from.cell, {a.p, e.d, infinity, e.radiance, weight}},
                                  {Side::light, from.cell, {a.p, e.d, infinity, 0, weight}}};
-  const bool one = fields.rule == Rule::returned;
   record(fields, training, std::span(records + (one && side == Side::light), one ? 1 : 2));
 }
 

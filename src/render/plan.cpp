@@ -23,6 +23,8 @@ constexpr double first_guess = 60;     // CPU seconds of a render whose end its 
 constexpr double least_pixels = 2500;  // below, a pilot says little
 constexpr uint32_t pilot_passes = 17;  // the last look is before the last of them
 constexpr uint32_t pilot_lessons = 8;  // about, in time of passes
+// Of quotients beyond it a few bright pixels decide how large they are, if not that they are.
+constexpr double most_trusted = 10;
 
 // Of the crop window, which alone is rendered.
 double pixels_of(const Camera& camera) { return double(camera.crop_width) * camera.crop_height; }
@@ -88,14 +90,17 @@ struct CameraKeeper {
 
 std::string describe(const Pilot& p) {
   if (p.passes == 0) return "the pilot saw nothing to compare";
-  return fmt::format("path tracing leaves {:.{}f} times the error after equal time{}", p.ratio, p.ratio < 10 ? 2 : 0,
+  const std::string times = p.ratio > most_trusted       ? fmt::format("more than {:g}", most_trusted)
+                            : 1 / p.ratio > most_trusted ? fmt::format("less than {:g}", 1 / most_trusted)
+                                                         : fmt::format("{:.2f}", p.ratio);
+  return fmt::format("path tracing leaves {} times the error after equal time{}", times,
                      p.settled ? "" : "; the render looks again");
 }
 
 }  // namespace
 
 double Pilot::saved_seconds() const {
-  return ratio > 0 && budget < infinity ? budget * (std::max(ratio, 1 / ratio) - 1) : 0;
+  return ratio > 0 && budget < infinity ? budget * (std::min(std::max(ratio, 1 / ratio), most_trusted) - 1) : 0;
 }
 
 double least_budget(const Camera& camera) { return least_time * 1e-6 * pixels_of(camera); }
@@ -159,7 +164,7 @@ void apply_parts(const std::vector<std::string>& parts, RenderOptions& options) 
       light_guided = true;
     else if (part != "none")
       throw Error(
-          fmt::format("--plan {}: no such part; write auto, all, none, or a list of light-subpaths, "
+          fmt::format("--plan \"{}\": no such part; write auto, all, none, or a list of light-subpaths, "
                       "camera-guiding, light-guiding",
                       part));
   }

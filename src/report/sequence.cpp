@@ -125,12 +125,14 @@ std::string sequence_json(const std::vector<FrameFigures>& frames) {
 
 namespace {
 
-// The column of a parameter; one that is called like a figure has a longer name.
-std::string column_of(const std::string& parameter) {
+// The column of a parameter, one of names; one that is called like a figure has a longer name.
+std::string column_of(const std::string& parameter, const std::set<std::string>& names) {
   static constexpr const char* figures[] = {"frame", "seconds", "cpu_seconds",    "spp",
                                             "mean",  "relmse",  "relmse_trimmed", "flicker"};
   const bool taken = std::find(std::begin(figures), std::end(figures), parameter) != std::end(figures);
-  return cell((taken ? "parameter_" : "") + parameter);
+  std::string column = parameter;
+  while (taken && (column == parameter || names.count(column) > 0)) column = "parameter_" + column;
+  return cell(column);
 }
 
 }  // namespace
@@ -140,7 +142,7 @@ std::string sequence_csv(const std::vector<FrameFigures>& frames) {
   for (const FrameFigures& f : frames)
     for (const auto& [name, value] : f.parameters) names.insert(name);
   std::string out = "frame";
-  for (const std::string& name : names) (out += ",") += column_of(name);
+  for (const std::string& name : names) (out += ",") += column_of(name, names);
   out += ",seconds,cpu_seconds,spp,mean,relmse,relmse_trimmed,flicker\n";
   for (const FrameFigures& f : frames) {
     out += fmt::format("{}", f.frame);

@@ -317,6 +317,20 @@ TEST_F(AnimateFiles, DamagedFramesAreToBeRemoved) {
               in("out/f_01.exr") + ": is no frame, or a damaged one; remove it");
 }
 
+// One that can be read all the same: blocks that do not shrink have no checksum in the file.
+TEST_F(AnimateFiles, FramesOfOtherPixelsAreDamaged) {
+  for (const bool half : {false, true}) {
+    Words words = {"--integrator", "path"};
+    if (half) words.push_back("--half");
+    const std::string to = half ? "half" : "float", path = in(to + "/f_01.exr");
+    run("2", to, words), run("2", to, words);
+    Picture image = read_picture(path);
+    image.pixels[7] += 10;
+    write_exr(path, image, read_metadata(path), half ? PixelType::half : PixelType::float32);
+    EXPECT_SAYS(error_of([&] { run("2", to, words); }), path + ": is no frame, or a damaged one; remove it");
+  }
+}
+
 TEST_F(AnimateFiles, RecordsTellTimeAndChoiceOfLights) {
   std::string room = kit::bytes_of(in("room.xml"));
   const std::string still = R"(<transform name="to_world"><scale value="0.6"/><translate x="$door"/></transform>)";

@@ -37,9 +37,10 @@ TEST(ErrorEstimate, NeedsTwoPassesAndLight) {
 }
 
 // E1 to E3 of docs/notation.md: the square of half the difference of the halves, over the pixel's mean or, the more its
-// passes disagree, over the mean around it, if that is less.
+// passes disagree, over the mean around it, if that is less, but no less than the passes leave no doubt of.
 double error(double square, double mean, double variance, double around) {
-  const double trust = mean * mean / (mean * mean + 20 * variance), dim = std::min(mean, around);
+  const double trust = mean * mean / (mean * mean + 20 * variance), sure = mean - 2 * std::sqrt(variance);
+  const double dim = std::max(std::min(mean, around), sure);
   return square * (trust / (mean * mean + 0.01) + (1 - trust) / (dim * dim + 0.01));
 }
 
@@ -93,6 +94,17 @@ TEST(ErrorEstimate, FirefliesCountInFullAndAreTrimmed) {
   const double truth = 1000. * 1000 / 1.01 / 1000;
   EXPECT_NEAR(estimated_error(film), truth, 0.05 * truth);
   EXPECT_EQ(estimate_error(film).relmse_trimmed, 0) << "one of a thousand is left out";
+}
+
+// A lamp smaller than a pixel is bright among dark neighbours, and no firefly: three passes in four see it.
+TEST(ErrorEstimate, DarkNeighboursDoNotDoubtWhatManyPassesSaw) {
+  Film film = film_of(40, 25);
+  std::vector<Rgb> dark(film.pixels(), Rgb(0.01f)), lit = dark;
+  lit[12 * 40 + 20] = Rgb(100);
+  for (int i = 0; i < 64; ++i) pass(film, i % 4 < 3 ? lit : dark);
+  const double e = 1000 * estimated_error(film);  // (A - B)² / 4 = 25², over 75² or, where it is doubted, 64²
+  EXPECT_GT(e, 625 / (75. * 75 + 0.01));
+  EXPECT_LT(e, 625 / (64. * 64));
 }
 
 // In a corner of the picture the window is what is left of it: 3 x 3 pixels without the corner itself.

@@ -102,6 +102,11 @@ constexpr Reference references[] = {
     {"veach_mis_bdpt", "veach-mis/scene.xml", "veach-mis-384x216-depth5.exr", 384, 216, 5, "bdpt", 48, 0.01},
     {"veach_mis_path", "veach-mis/scene.xml", "veach-mis-384x216-depth5.exr", 384, 216, 5, "path", 96, 0.01},
     {"veach_ajar_bdpt", "veach-ajar/scene.xml", "veach-ajar-320x180-depth10.exr", 320, 180, 10, "bdpt", 64, 0.03},
+    {"cornell_box_guided_bdpt", "cornell-box/scene.xml", "cornell-box-256x256-depth10.exr", 256, 256, 10, "guided-bdpt",
+     16, 0.015},
+    {"cornell_box_guided_vcm", "cornell-box/scene.xml", "cornell-box-256x256-depth10.exr", 256, 256, 10, "guided-vcm",
+     16, 0.015},
+    {"cornell_box_vpl", "cornell-box/scene.xml", "cornell-box-256x256-depth10.exr", 256, 256, 10, "vpl", 16, 0.015},
 };
 
 INSTANTIATE_TEST_SUITE_P(Mitsuba, AgainstReference, testing::ValuesIn(references),

@@ -56,11 +56,13 @@ std::vector<Case> quick() {
                                    "x 1e-12",
                                    "x 1e+12",
                                    "1e-8 beside 1e8",
+                                   "1e-8 and 1e8 in one image",
                                    "none",
                                    "ball of radius 1e-06",
                                    "1 x 1",
                                    "roughness 0.0001",
                                    "box of index 1.0001",
+                                   "65 total reflections",
                                    "glass and mirrors alone",
                                    "black",
                                    "seen from 1e-06 above",
@@ -72,9 +74,9 @@ std::vector<Case> quick() {
                                    "lying by 1e6"};
   std::vector<Case> chosen;
   for (Case& c : cases())
-    if (c.refused || std::find(std::begin(names), std::end(names), c.name) != std::end(names)) {
+    if (!c.refused.empty() || std::find(std::begin(names), std::end(names), c.name) != std::end(names)) {
       c.passes = std::max(c.passes / part, 1u);
-      if (!judged && c.answer > 0) c.answer = -1;
+      if (!judged && c.answer != 0) c.answer = -1, c.judge.clear();
       c.make = halved(c.make), c.twin = halved(c.twin);
       chosen.push_back(std::move(c));
     }
@@ -86,7 +88,7 @@ class Stress : public testing::TestWithParam<Case> {};
 // Finite, not rejected, and what it ought to be up to noise; with merging, up to a small bias too.
 TEST_P(Stress, IsBorne) {
   const Case& c = GetParam();
-  const Outcome right = judged ? reference(c, batches) : Outcome{};
+  const Outcome right = reference(c, batches);
   CellTable walls;
   for (const std::string& integrator : integrator_names()) {
     if (!can_find(c, integrator) || (c.fields && !is_guided(integrator))) continue;

@@ -271,6 +271,8 @@ TEST(Flicker, ColumnsOfParametersAreNotThoseOfFigures) {
   EXPECT_EQ(sequence_csv({f}),
             "frame,parameter_frame,parameter_spp,sun,seconds,cpu_seconds,spp,mean,relmse,relmse_trimmed,flicker\n"
             "0,1,4,2,0,0,0,0,,,\n");
+  f.parameters = {{"spp", "4"}, {"parameter_spp", "2"}};
+  EXPECT_EQ(sequence_csv({f}).substr(0, 50), "frame,parameter_spp,parameter_parameter_spp,second");
 }
 
 }  // namespace

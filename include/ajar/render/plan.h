@@ -28,7 +28,7 @@ struct Pilot {
   double path_for_one = 0;       ///< samples of path tracing in the time of one
   double cpu_seconds = 0;        ///< of the pilot
   double budget = infinity;      ///< CPU seconds of the render; infinite where its noise alone ends it
-  double saved_seconds() const;  ///< CPU, to equal error, by leaving out the worse of the two
+  double saved_seconds() const;  ///< CPU, to equal error, by leaving out the worse of the two; nine budgets at most
 };
 
 struct Plan {
