@@ -1,4 +1,4 @@
-// Subpaths through fields that have no share in the mixtures are unguided subpaths, to the bit.
+// What subpaths teach, and how fields without a share in the mixtures guide: not at all, to the bit.
 #include <gtest/gtest.h>
 
 #include "kit/stage.h"
@@ -36,6 +36,32 @@ TEST(Guided, NoMixIsUnguided) {
   finish(scene);
   EXPECT_EQ(different(scene, train(scene, Accel(scene), 5, 2000, 0), 2000), 0);
   EXPECT_GT(different(scene, train(scene, Accel(scene)), 2000), 2000) << "with a mix they differ";
+}
+
+// A floor under a lamp as wide as the sky, with black slats before half of it or without.
+Scene under_slats(bool slats) {
+  Scene scene;
+  const uint32_t grey = add_diffuse(scene, Rgb(0.5f)), black = add_diffuse(scene, Rgb(0));
+  add_quad(scene, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, grey);
+  add_area_light(scene, add_quad(scene, {-4, 1, -4}, {8, 0, 0}, {0, 0, 8}, black), Rgb(1));
+  for (float x = -4; slats && x < 4; x += 0.04f) add_box(scene, {x, 0.2f, -4}, {x + 0.02f, 0.2001f, 4}, black);
+  set_camera(scene, {0, 0.1f, 0.9f}, Vec3(0), 60, 24, 24);
+  finish(scene);
+  return scene;
+}
+
+// What scatters nothing is known to: a field that only learned of rays that find something would be as bright as
+// without the slats.
+TEST(Guided, BlackSurfacesTeachZeros) {
+  const auto brings = [](bool slats) {
+    const Scene scene = under_slats(slats);
+    const Fields fields = train(scene, Accel(scene), 4, 4000, 0);
+    const uint32_t cell = find(fields.table, Vec3(0), Vec3(0, 1, 0)).cell;
+    return cell == none ? 0 : fields.q.cells[cell].total;
+  };
+  const float open = brings(false);
+  EXPECT_GT(open, 0);
+  EXPECT_NEAR(brings(true) / open, 0.5, 0.15);
 }
 
 }  // namespace
