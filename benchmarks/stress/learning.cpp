@@ -71,8 +71,8 @@ StoredFields lying() {
   return stored;
 }
 
-// Bytes that so many passes of the usual scene find room for one cell in. A cell takes as much as a fifth of what the
-// fields take without any, and is learned as long as any of it is left.
+// Bytes in which the usual scene's fields find room for one cell: the least with which they learn any, in steps far
+// smaller than a cell.
 size_t room_for_one() {
   static const size_t room = [] {
     const double none = double(bytes(start_fields(usual(), 1)));

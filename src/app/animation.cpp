@@ -41,9 +41,10 @@ std::string files_key(const Scene& scene) { return fmt::format("files with check
 bool is_done(Animation& a, int frame) {
   const std::string path = frame_name(a.pattern, frame);
   if (!is_there(path)) return false;
-  // What is stored as half is rounded, by a part in 2048 at most; all else comes back as it was.
-  const Picture image = read_frame(path, a.arguments.half ? 0x1p-11 : 0);
+  const Picture image = read_frame(path);
   const Metadata metadata = read_metadata(path);
+  // What is stored as half is rounded, by a part in 2048 at most; all else comes back as it was.
+  check_mean(path, image, metadata, a.arguments.half ? 0x1p-11 : 0);
   const auto found = metadata.find("ajar:frame");
   const std::shared_ptr<const Scene> scene = load_frame(a.shooting, frame);
   note_size(a, frame, *scene);

@@ -53,9 +53,11 @@ Stage set_up(Shooting& shooting, int frame, const Stage* before);
 /// "door=16.3  time=0.25"
 std::string describe(const Timeline& timeline, int frame);
 
-/// The image of a finished frame. Throws Error, which says what to do about a damaged one: that cannot be read, or
-/// whose mean is another than it tells of itself, relative to that by more than slack.
-Picture read_frame(const std::string& path, double slack = infinity);
+/// The image of a finished frame. Throws Error, which says what to do about a damaged one.
+Picture read_frame(const std::string& path);
+/// Throws the same where the image's mean is another than the frame's metadata tell, relative to that by more than
+/// slack.
+void check_mean(const std::string& path, const Picture& image, const Metadata& metadata, double slack);
 
 /// The newest carried fields in a folder that belong to this key and to no frame after the given one, and suit.
 std::optional<Carried> find_carried(const std::string& folder, const std::string& key, int last,

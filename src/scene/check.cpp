@@ -161,7 +161,7 @@ bool all_finite(const Mat4& m) {
 }
 
 void check_camera(const Camera& c) {
-  const auto refuse_camera = [](const char* what) { throw Error(fmt::format("scene: its camera {}", what)); };
+  const auto refuse_camera = [](const std::string& what) { throw Error(fmt::format("scene: its camera {}", what)); };
   if (c.width < 1 || c.height < 1) refuse_camera("has less than a pixel; set its width and height");
   if (c.crop_width < 1 || c.crop_height < 1 || c.crop_x < 0 || c.crop_y < 0 || c.crop_width > c.width - c.crop_x ||
       c.crop_height > c.height - c.crop_y)
@@ -169,7 +169,7 @@ void check_camera(const Camera& c) {
   if (!all_finite(c.to_world) || !all_finite(c.to_camera))
     refuse_camera("looks nowhere; give it a target apart from its eye, and a to_world that can be inverted");
   if (!(max_abs(Vec3(c.to_world[3])) <= farthest))
-    throw Error(fmt::format("scene: its camera stands farther than {} units away", farthest));
+    refuse_camera(fmt::format("stands farther than {} units away", farthest));
   if (!(std::min(c.plane.x, c.plane.y) > 0 && std::max(c.plane.x, c.plane.y) < infinity))
     refuse_camera("has no view; give it a field of view between 0 and 180 degrees");
   if (!(c.aperture >= 0 && c.aperture < infinity && c.focus > 0 && c.focus < infinity))

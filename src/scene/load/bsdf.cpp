@@ -220,15 +220,14 @@ bool comes_first(const std::string& a, const std::string& b) {
   return parts(a) < parts(b);
 }
 
-// In the order of their names, as versions from 2 to 3.6 have it: 0.x, and 3.7 and later, take them as the file has
-// them.
+// Versions from 2 to 3.6 take them in the order of their names, others in that of the file.
 void sort_by_name(Params& p, std::vector<std::pair<std::string, const Node*>>& list) {
   const auto before = [](const auto& a, const auto& b) { return comes_first(a.first, b.first); };
   if (!p.loader.document.by_name || std::is_sorted(list.begin(), list.end(), before)) return;
   std::stable_sort(list.begin(), list.end(), before);
   note(p.loader, p.node,
-       "its nested bsdfs are taken in the order of their names; a version of 3.7 or later says that "
-       "of the file");
+       "its nested bsdfs are taken in the order of their names, as before version 3.7; since then it is that of the "
+       "file");
 }
 
 // The nested bsdfs: as many as asked for, where one without a name is called _arg_0, _arg_1 and so on.
