@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <iterator>
 
 #include "ajar/scene/build.h"
@@ -25,15 +26,19 @@ void add_stiff(List& l) {
   l.group = "closed box";
   for (const double a : {0.5, 0.9, 0.99, 0.999}) {
     Case& c = l.add("albedo " + shown(a), [a] { return grey_furnace(float(a)); });
-    c.answer = 1 / (1 - double(float(a)));
-    if (a > 0.95) c.passes = 3;
+    c.answer = (1 - std::pow(double(float(a)), deepest)) / (1 - double(float(a)));  // paths end there (limits.md)
+    if (a > 0.95) c.passes = a > 0.995 ? 12 : 3;
   }
   Case& edges = l.add("albedo 1, 16 edges", [] { return grey_furnace(1); });
   edges.answer = 16, edges.max_depth = 16;
   Case& endless = l.add("albedo 1, no limit", [] { return grey_furnace(1); });
   endless.judge.clear(), endless.passes = 2;
   l.group = "corridor";
-  for (const int n : {1, 3, 6}) l.add(fmt::format("{} rooms", n), [n] { return corridor(n, false); }).judge = "bdpt";
+  for (const int n : {1, 3, 6}) {
+    Case& c = l.add(fmt::format("{} rooms", n), [n] { return corridor(n, false); });
+    c.judge = "bdpt";
+    if (n == 6) c.passes = 64;
+  }
   Case& fifty = l.add("50 rooms, doors in line", [] { return corridor(50, true); });
   fifty.judge = "bdpt", fifty.faint = 1e-3;
   l.group = "door";
@@ -41,7 +46,7 @@ void add_stiff(List& l) {
     Case& c = l.add(shown(d) + " degrees", [d] { return door(d); });
     c.judge = "bdpt";
     c.light = d > 0.5;  // one path in millions gets through, and meets the lens
-    if (d < 2) c.passes = 64;
+    if (d < 2) c.passes = d < 0.05 ? 512 : 64;
   }
   l.add("shut", [] { return door(0); }).answer = 0;
 }
