@@ -170,12 +170,12 @@ void add_row(const Arguments& a, Table& table, const Case& c) {
       continue;
     }
     const Trial t = apart(a.limit, [&] { return run(c, integrator, a.batches, a.passes); });
-    const Verdict v = judge(c, integrator, t.outcome, right.outcome);
+    const Verdict v = t.death.empty() ? judge(c, integrator, t.outcome, right.outcome) : Verdict{false, 0, 0, t.death};
     table.text += fmt::format(" {} |", cell(table, c, integrator, t, v));
     megabytes = std::max(megabytes, t.megabytes), rejected += t.outcome.rejected;
     if (!a.quiet)
-      fmt::print(stderr, "{}, {}, {}: {:.1f} s, p {:.2g} {}{}{}\n", c.group, c.name, integrator, t.outcome.cpu_seconds,
-                 v.p, v.message, c.refused.empty() ? "" : t.outcome.refusal, t.death);
+      fmt::print(stderr, "{}, {}, {}: {:.1f} s, p {:.2g} {}{}\n", c.group, c.name, integrator, t.outcome.cpu_seconds,
+                 v.p, v.message, c.refused.empty() ? "" : t.outcome.refusal);
     if (!v.ok) save_pictures(a, c, integrator, t.outcome, right.outcome);
   }
   table.text += fmt::format(" {:.0f} | {} |\n", megabytes, rejected);

@@ -10,7 +10,7 @@ namespace ajar {
 /// scattered there as from a matt surface; relative to that subpath's density, and not raised.
 double count_before(const WalkOptions& options, const Subpath& camera);
 /// Roulette at the last vertex, before its joins: false where the subpath ends; else its throughput counts for those
-/// that do. Takes one pair of numbers. (G15)
+/// that do, and is raised to the window's times that of the start at the most. Takes one pair of numbers. (G15)
 bool is_worth_it(const WalkOptions& options, Sampler& sampler, Subpath& camera, Walk& walk);
 
 }  // namespace ajar
