@@ -161,7 +161,8 @@ std::string describe(const StoredFields& stored) {
   std::vector<size_t> by_level(most_cell_levels + 1);
   for (const Cell& c : f.cells) ++by_level[size_t(level_of(c.key))];
   return fmt::format("scene: {}\n", stored.scene) +
-         fmt::format("learned {} times, from {} passes; {} bytes\n", f.generation, stored.passes, bytes(f)) +
+         fmt::format("learned {} times; whoever goes on from them begins with pass {}; {} bytes\n", f.generation,
+                     stored.passes, bytes(f)) +
          fmt::format("{}, {} cells; {}; edge at level 0: {:.3g}\n", structure_names[size_t(f.structure)],
                      f.cells.size(), counts(by_level), f.table.width) +
          describe(f.q, "Q", "irradiance [W/m^2]") + describe(f.w, "W", "importance [pixels/m^2]");

@@ -245,7 +245,7 @@ TEST_F(FieldsUsed, AreToldAndShown) {
   const std::string text = told({});
   EXPECT_NE(text.find(json["fields"]["cells"].dump() + " cells; level 0: "), std::string::npos) << text;
   EXPECT_NE(text.find(json["fields"]["bytes"].dump() + " bytes"), std::string::npos) << text;
-  EXPECT_NE(text.find("from 13 passes"), std::string::npos) << text;
+  EXPECT_NE(text.find("begins with pass 13;"), std::string::npos) << text;
   const std::string more = told({"--scene", box, "--size", "40x30", "-o", folder.string()});
   EXPECT_EQ(more.find(text), 0u);
   for (const char* name : {"cells.png", "irradiance.png", "importance.png", "strata-q.png", "strata-w.png"}) {

@@ -128,7 +128,7 @@ TEST_F(FieldsShown, LinesCount) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
   };
   has("scene: the scene\n");
-  has("learned 3 times, from 12 passes; " + std::to_string(bytes(fields)) + " bytes\n");
+  has("learned 3 times; whoever goes on from them begins with pass 12; " + std::to_string(bytes(fields)) + " bytes\n");
   has(std::to_string(fields.cells.size()) + " cells; level 0: " + std::to_string(fields.cells.size()));
   has("Q: " + std::to_string(fields.q.nodes.size()) + " nodes of 16 strata; level 0: ");
   has("0.4 to 0.6: " + std::to_string(fields.cells.size()));

@@ -13,7 +13,7 @@ namespace ajar {
 struct StoredFields {
   Fields fields;
   std::string scene;    ///< scene_key of the scene that they were learned in
-  uint32_t passes = 0;  ///< whose numbers they were learned from: who samples with them must not draw these again
+  uint32_t passes = 0;  ///< whose numbers were drawn, whether they taught or not: who goes on begins with this one
 };
 
 /// What fields depend on, as words and a hash: shapes, their places, lights. Not the camera, nor the film.
