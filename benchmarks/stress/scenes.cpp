@@ -20,21 +20,32 @@ void apply(Scene& scene, const Mat4& m) {
     shape.to_world = m * shape.to_world, shape.to_object = Mat4(glm::inverse(glm::dmat4(shape.to_world)));
 }
 
+// A lamp that reflects nothing.
+void add_lamp(Scene& scene, const Vec3& corner, const Vec3& u, const Vec3& v, float radiance) {
+  add_area_light(scene, add_quad(scene, corner, u, v, add_diffuse(scene, Rgb(0))), Rgb(radiance));
+}
+
+// A scene whose pixels share nothing.
+Scene unfiltered() {
+  Scene scene;
+  scene.filter = make_filter(FilterKind::box);
+  return scene;
+}
+
 // A box of 2 x 2 x 2 without a front, about x, lit from its ceiling.
 void add_alcove(Scene& scene, float x, float radiance) {
-  const uint32_t grey = add_diffuse(scene, Rgb(0.6f)), black = add_diffuse(scene, Rgb(0));
+  const uint32_t grey = add_diffuse(scene, Rgb(0.6f));
   add_box(scene, {x - 1.05f, -1.05f, -1.05f}, {x + 1.05f, 1.05f, -1}, grey);
   add_box(scene, {x - 1.05f, -1.05f, -1}, {x + 1.05f, -1, 1}, grey);
   add_box(scene, {x - 1.05f, 1, -1}, {x + 1.05f, 1.05f, 1}, grey);
   add_box(scene, {x - 1.05f, -1, -1}, {x - 1, 1, 1}, grey);
   add_box(scene, {x + 1, -1, -1}, {x + 1.05f, 1, 1}, grey);
-  add_area_light(scene, add_quad(scene, {x - 0.4f, 0.98f, -0.4f}, {0.8f, 0, 0}, {0, 0, 0.8f}, black), Rgb(radiance));
+  add_lamp(scene, {x - 0.4f, 0.98f, -0.4f}, {0.8f, 0, 0}, {0, 0, 0.8f}, radiance);
 }
 
 // Glass of an index, and no light.
 Scene with_glass(float ior) {
-  Scene scene;
-  scene.filter = make_filter(FilterKind::box);
+  Scene scene = unfiltered();
   const uint32_t glass = add_example(scene, MaterialKind::dielectric);
   scene.materials[glass].ior = ior;
   return scene;
@@ -44,10 +55,6 @@ Scene with_glass(float ior) {
 void look_straight(Scene& scene, const Vec3& eye, const Vec3& target, float width) {
   set_size(scene.camera, image_side, image_side);
   set_orthographic(scene.camera, look_at(eye, target) * glm::scale(Mat4(1), Vec3(width / 2, width / 2, 1)));
-}
-
-void add_black_lamp(Scene& scene, const Vec3& corner, const Vec3& u, const Vec3& v) {
-  add_area_light(scene, add_quad(scene, corner, u, v, add_diffuse(scene, Rgb(0))), Rgb(1));
 }
 
 // That of cornell(), without its lamp.
@@ -79,9 +86,8 @@ Scene moved_room(float scale, const Vec3& shift) {
 }
 
 Scene corridor(int rooms, bool in_line) {
-  Scene scene;
-  scene.filter = make_filter(FilterKind::box);
-  const uint32_t grey = add_diffuse(scene, Rgb(0.8f)), black = add_diffuse(scene, Rgb(0));
+  Scene scene = unfiltered();
+  const uint32_t grey = add_diffuse(scene, Rgb(0.8f));
   const float length = 2 * float(rooms);
   add_box(scene, {0, 0, 0}, {length, 2, 2}, grey, true);
   for (int i = 1; i < rooms; ++i) {
@@ -89,7 +95,7 @@ Scene corridor(int rooms, bool in_line) {
     add_box(scene, {x - 0.02f, -0.1f, -0.1f}, {x + 0.02f, 2.1f, z}, grey);
     add_box(scene, {x - 0.02f, -0.1f, z + 0.6f}, {x + 0.02f, 2.1f, 2.1f}, grey);
   }
-  add_area_light(scene, add_quad(scene, {length - 1.3f, 1.98f, 0.7f}, {0.6f, 0, 0}, {0, 0, 0.6f}, black), Rgb(20));
+  add_lamp(scene, {length - 1.3f, 1.98f, 0.7f}, {0.6f, 0, 0}, {0, 0, 0.6f}, 20);
   if (in_line)
     set_camera(scene, {0.1f, 1, 1}, {length, 1, 1}, 140 / length, image_side, image_side);
   else
@@ -98,15 +104,14 @@ Scene corridor(int rooms, bool in_line) {
 }
 
 Scene door(double degrees) {
-  Scene scene;
-  scene.filter = make_filter(FilterKind::box);
-  const uint32_t grey = add_diffuse(scene, Rgb(0.7f)), black = add_diffuse(scene, Rgb(0));
+  Scene scene = unfiltered();
+  const uint32_t grey = add_diffuse(scene, Rgb(0.7f));
   add_box(scene, {0, 0, -2}, {2, 2, 2}, grey, true);
   const float gap = float(std::sin(degrees * std::numbers::pi / 180)), thick = gap > 0 ? std::min(gap, 0.02f) : 0.02f;
   add_box(scene, {-0.1f, -0.1f, -thick}, {0.7f, 2.1f, thick}, grey);
   add_box(scene, {gap > 0 ? 0.7f + gap : 0.6f, -0.1f, -thick}, {2.1f, 2.1f, thick}, grey);
   const float strength = gap > 0 ? 4 / gap : 20;  // so that all images are about as bright
-  add_area_light(scene, add_quad(scene, {0.7f, 1.98f, -1.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, black), Rgb(strength));
+  add_lamp(scene, {0.7f, 1.98f, -1.3f}, {0.6f, 0, 0}, {0, 0, 0.6f}, strength);
   set_camera(scene, {1.8f, 1, 1.8f}, {0.8f, 0.8f, 0}, 70, image_side, image_side);
   return finished(std::move(scene));
 }
@@ -119,8 +124,7 @@ Scene false_floor(float gap) {
 
 Scene floor_lamp(float gap) {
   Scene scene = unlit_room();
-  const uint32_t black = add_diffuse(scene, Rgb(0));
-  add_area_light(scene, add_quad(scene, {-0.9f, -1 + gap, 0.9f}, {0.6f, 0, 0}, {0, 0, -0.3f}, black), Rgb(10));
+  add_lamp(scene, {-0.9f, -1 + gap, 0.9f}, {0.6f, 0, 0}, {0, 0, -0.3f}, 10);
   return finished(std::move(scene));
 }
 
@@ -174,23 +178,20 @@ Scene beside(float bright) {
   Scene scene = bright_room(1e-8f);
   if (bright > 0) {
     add_box(scene, {3, -1, -1}, {5, 1, 1}, add_diffuse(scene, Rgb(0.6f)), true);
-    const uint32_t black = add_diffuse(scene, Rgb(0));
-    add_area_light(scene, add_quad(scene, {3.6f, 0.98f, -0.4f}, {0.8f, 0, 0}, {0, 0, 0.8f}, black), Rgb(bright));
+    add_lamp(scene, {3.6f, 0.98f, -0.4f}, {0.8f, 0, 0}, {0, 0, 0.8f}, bright);
   }
   return finished(std::move(scene));
 }
 
 Scene in_one_image(float faint, float bright) {
-  Scene scene;
-  scene.filter = make_filter(FilterKind::box);
+  Scene scene = unfiltered();
   add_alcove(scene, -1.1f, faint), add_alcove(scene, 1.1f, bright);
   set_camera(scene, {0, 0, 5}, Vec3(0), 56, 2 * image_side, image_side);
   return finished(std::move(scene));
 }
 
 Scene one_triangle() {
-  Scene scene;
-  scene.filter = make_filter(FilterKind::box);
+  Scene scene = unfiltered();
   Mesh mesh;
   mesh.positions = {{-1, 0, 1}, {1, 0, 1}, {0, 0, -1}};
   mesh.triangles = {{0, 1, 2}};
@@ -233,7 +234,7 @@ Scene glass_in_sky(float ior, bool box) {
 Scene glass_pane(float ior) {
   Scene scene = with_glass(ior);
   add_box(scene, {-2, -2, -0.3f}, {2, 2, 0.3f}, 0);
-  add_black_lamp(scene, {-2, -2, -1}, {4, 0, 0}, {0, 4, 0});
+  add_lamp(scene, {-2, -2, -1}, {4, 0, 0}, {0, 4, 0}, 1);
   look_straight(scene, {0, 0, 3}, Vec3(0), 1);
   return finished(std::move(scene));
 }
@@ -250,7 +251,7 @@ Scene glass_bar(float ior, int hops) {
     bar.triangles.push_back({a, b, b + 4}), bar.triangles.push_back({a, b + 4, a + 4});
   }
   add_mesh(scene, std::move(bar), 0);
-  add_black_lamp(scene, {end + 1, 0.5f, -1.5f}, {0, 0, 3}, {-1.5f, 1.5f, 0});
+  add_lamp(scene, {end + 1, 0.5f, -1.5f}, {0, 0, 3}, {-1.5f, 1.5f, 0}, 1);
   look_straight(scene, {-1.5f, 2.5f, 0}, {0.5f, 0.5f, 0}, 0.8f);
   return finished(std::move(scene));
 }

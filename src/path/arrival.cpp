@@ -34,9 +34,8 @@ bool is_worth_it(const WalkOptions& options, Sampler& sampler, Subpath& camera, 
   Vertex& v = camera[camera.n - 1];
   const float all = promise(v.guide, v.beta).all;
   if (!(walk.promise > 0) || !(all > 0)) return true;
-  const float lowest = std::clamp(max_component(walk.survival) / options.window, least, 1.0f);
   const float probability = std::clamp(window * options.goes_on * share_brought(options, camera) * all / walk.promise,
-                                       lowest, 1.0f);  // (G15)
+                                       lowest_chance(options, walk.survival, least, 1), 1.0f);  // (G15)
   if (!(sampler.at(number).x < probability)) return false;
   walk.sure = walk.sure && probability == 1;
   v.beta /= probability, walk.survival /= probability;

@@ -95,17 +95,23 @@ inline bool draw_light(const Scene& scene, const Guide& guide, Sampler& sampler,
 /// still ends soon.
 inline float surest(int vertices) { return std::max(0.95f, 1 - 1 / float(vertices)); }  // (R4)
 
+/// The lowest probability from least to most with which roulette by what fields expect does not raise a throughput to
+/// more than the window's times that of the start: what they know nothing of, or lie about, would come back as rare and
+/// bright samples. (G6, G15)
+inline float lowest_chance(const WalkOptions& options, const Rgb& survival, float least, float most) {
+  return std::clamp(max_component(survival) / options.window, least, most);
+}
+
 /// Probability that a subpath of so many vertices goes on. Where the field knows what is still to be expected of it,
-/// that decides, against what was expected at its start (promised: set here the first time that it is known), but it
-/// does not raise the throughput to more than the window's times that of the start: what the field knows nothing of, or
-/// lies about, would come back as rare and bright samples. Elsewhere the throughput decides.
+/// that decides, against what was expected at its start (promised: set here the first time that it is known), within
+/// lowest_chance. Elsewhere the throughput decides.
 inline float survival_probability(const WalkOptions& options, const Guide& guide, int vertices, const Rgb& beta,
                                   const Rgb& survival, float& promised) {
   if (options.fields) {
     const Promise p = promise(guide, beta);
     if (!(promised > 0)) promised = p.all;
     const float most = vertices > sure_vertices ? surest(vertices) : 1;
-    const float least = std::clamp(max_component(survival) / options.window, 0.05f, most);
+    const float least = lowest_chance(options, survival, 0.05f, most);
     if (p.beyond > 0 && promised > 0) {
       const float window = guide.side == Side::camera ? options.window * options.goes_on : options.window;
       return std::clamp(window * p.beyond / promised, least, most);  // (G6)
