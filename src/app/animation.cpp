@@ -60,15 +60,26 @@ bool is_done(Animation& a, int frame) {
   throw Error(fmt::format("{}: {}; remove it, or write elsewhere", path, why));
 }
 
-// Every frame that is there is looked at, and its scene loaded, which may take long: told now and then.
+// What is done before the first frame may take long: told now and then.
+struct Teller {
+  const char* done;
+  bool quiet;
+  double told = wall_seconds();
+
+  void tell(int frame, const FrameRange& r) {
+    if (quiet || wall_seconds() - told < 5) return;
+    told = wall_seconds();
+    say(stderr, "ajar: note: {} frame {} of {} to {}\n", done, frame, r.first, r.last);
+  }
+};
+
+// Every frame that is there is looked at, and its scene loaded.
 void find_what_is_left(Animation& a) {
   const FrameRange& r = a.shooting.timeline.frames;
-  double told = wall_seconds();
+  Teller teller{"looked at", a.arguments.quiet};
   for (int f = r.first; f <= r.last; ++f) {
     if (!is_done(a, f)) a.to_do.push_back(f);
-    if (a.arguments.quiet || wall_seconds() - told < 5) continue;
-    told = wall_seconds();
-    say(stderr, "ajar: note: looked at frame {} of {} to {}\n", f, r.first, r.last);
+    teller.tell(f, r);
   }
 }
 
@@ -91,6 +102,7 @@ void look_ahead(Animation& a) {
   if (t.tracks.empty() && !(t.has_time && t.first_time != t.last_time)) return;
   const double began = process_cpu_seconds();
   std::shared_ptr<const Scene> scene;
+  Teller teller{"looked ahead at", a.arguments.quiet};
   for (const int frame : a.to_do) {
     if (frame == 0 || frame == r.first || frame == r.last) continue;
     const double spent = process_cpu_seconds() - began;
@@ -98,6 +110,7 @@ void look_ahead(Animation& a) {
     if (spent > limit) continue;
     scene = load_frame(a.shooting, frame);
     frame_options(a, frame, *scene), note_size(a, frame, *scene);
+    teller.tell(frame, r);
   }
   if (scene) check_apart(a.arguments, r, *scene, a.shooting.cache);
 }

@@ -122,6 +122,7 @@ void check_apart(const BenchArguments& a, const Suite& suite) {
 
 void run_bench_command(const BenchArguments& a) {
   if (is_stress(a.suite)) run_stress(a);
+  if (is_file(a.references)) throw Error(fmt::format("--references {}: is a file; name a folder", a.references));
   const Suite suite = load_suite(a.suite, a.quick);
   check_apart(a, suite);
   for (const BenchScene& scene : suite.scenes)

@@ -18,8 +18,9 @@ std::string describe(const Pilot& p) {
   out += fmt::format("  {:<12} {:>20.3g} {:>20.3g} {:>18.3g}\n", "guided-bdpt", 1.0, p.guided, 1.0);
   out += fmt::format("  {:<12} {:>20.3g} {:>20.3g} {:>18.3g}\n", "path", p.path_for_one, p.path, p.ratio);
   if (p.saved_seconds() > 0)
-    out += fmt::format("  {} saves some {:.0f} s of CPU to equal error against {}\n",
-                       p.ratio < 1 ? "path" : "guided-bdpt", p.saved_seconds(), p.ratio < 1 ? "guided-bdpt" : "path");
+    out += fmt::format("  {} saves {} {:.0f} s of CPU to equal error against {}\n",
+                       p.ratio < 1 ? "path" : "guided-bdpt", p.saves_more() ? "more than" : "some", p.saved_seconds(),
+                       p.ratio < 1 ? "guided-bdpt" : "path");
   return out;
 }
 

@@ -97,23 +97,34 @@ Spared spare(const RenderArguments& a, const Run& run, const RenderState& state,
   return out;
 }
 
+// "a is written", "a, b and c are written", for the endings "is written" and "are written".
+std::string listed(std::vector<std::string> names, const char* of_one, const char* of_several) {
+  if (names.size() == 1) return fmt::format("{} {}", names[0], of_one);
+  const std::string last = names.back();
+  names.pop_back();
+  return fmt::format("{} and {} {}", fmt::join(names, ", "), last, of_several);
+}
+
 std::string left_alone(const RenderArguments& a, const Spared& spared) {
   std::vector<std::string> names;
   if (spared.image) names.push_back(a.out);
   if (spared.checkpoint) names.push_back(a.checkpoint);
   if (spared.fields) names.push_back(a.save_fields);
   if (spared.log) names.push_back(a.log);
-  if (names.empty()) return {};
-  if (names.size() == 1) return fmt::format("; {} is left as it was", names[0]);
-  const std::string last = names.back();
-  names.pop_back();
-  return fmt::format("; {} and {} are left as they were", fmt::join(names, ", "), last);
+  return names.empty() ? "" : "; " + listed(names, "is left as it was", "are left as they were");
+}
+
+// What a render without a sample does not write.
+std::string unwritten(const RenderArguments& a) {
+  std::vector<std::string> names = {a.out};
+  for (const std::string& name : {a.checkpoint, a.save_fields, a.techniques})
+    if (!name.empty()) names.push_back(name);
+  return listed(names, "is not written", "are not written");
 }
 
 std::string interruption(const RenderArguments& a, const Spared& spared, const Film& film) {
   if (!has_samples(film))
-    return fmt::format("interrupted before the first sample that is in the image; {} not written",
-                       a.checkpoint.empty() ? a.out + " is" : fmt::format("{} and {} are", a.out, a.checkpoint));
+    return "interrupted before the first sample that is in the image; " + unwritten(a);
   const std::string rest = (spared.image ? "" : fmt::format("; {} has what was done", a.out)) + left_alone(a, spared);
   if (film.passes > 0) return fmt::format("interrupted after {:.1f} spp{}", spp_of(film), rest);
   const double share = 1 - double(film.chunks) / chunk_count(film);

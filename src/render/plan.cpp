@@ -99,6 +99,8 @@ std::string describe(const Pilot& p) {
 
 }  // namespace
 
+bool Pilot::saves_more() const { return std::max(ratio, 1 / ratio) > most_trusted; }
+
 double Pilot::saved_seconds() const {
   return ratio > 0 && budget < infinity ? budget * (std::min(std::max(ratio, 1 / ratio), most_trusted) - 1) : 0;
 }

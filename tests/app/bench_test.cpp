@@ -90,6 +90,9 @@ TEST_F(BenchCommand, QuickAndReferences) {
   EXPECT_EQ(results()["seeds"].size(), 1u);
   EXPECT_TRUE(fs::exists(folder / "elsewhere" / "s-8x8-depth2.exr"));
   EXPECT_THROW(run({suite, "-o", out}), Error) << "the folder holds the quick version's runs";
+  const std::string unclaimed = (folder / "unclaimed").string();
+  EXPECT_THROW(run({suite, "-o", unclaimed, "--references", suite}), Error) << "is a file";
+  EXPECT_FALSE(fs::exists(unclaimed));
 }
 
 TEST_F(BenchCommand, CommandsAreForAShell) {

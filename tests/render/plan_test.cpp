@@ -76,6 +76,17 @@ TEST(Plan, KeepsGuidingBehindADoor) {
   }
 }
 
+TEST(Plan, TrustsNoRatioBeyondTen) {
+  Pilot p;
+  p.budget = 1;
+  for (const double ratio : {0.05, 0.2, 5.0, 20.0}) {
+    p.ratio = ratio;
+    const bool beyond = ratio < 0.1 || ratio > 10;
+    EXPECT_EQ(p.saves_more(), beyond) << ratio;
+    EXPECT_NEAR(p.saved_seconds(), beyond ? 9 : 4, 1e-9) << ratio;
+  }
+}
+
 TEST(Plan, IsTheSameForTheSameSeedWhateverTheThreads) {
   const Plan a = piloted(two_rooms(20, 72), budget(20, 3, 1)), b = piloted(two_rooms(20, 72), budget(20, 3, 2));
   ASSERT_TRUE(a.pilot && b.pilot);

@@ -29,6 +29,7 @@ struct Pilot {
   double cpu_seconds = 0;        ///< of the pilot
   double budget = infinity;      ///< CPU seconds of the render; infinite where its noise alone ends it
   double saved_seconds() const;  ///< CPU, to equal error, by leaving out the worse of the two; nine budgets at most
+  bool saves_more() const;       ///< than saved_seconds() says, which trusts no ratio beyond ten
 };
 
 struct Plan {

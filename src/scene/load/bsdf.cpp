@@ -58,7 +58,10 @@ void limit_width(Params& p, const char* name, const Slot& s) {
 // Microfacets are never smoother than min_alpha.
 Slot roughness(Params& p, const char* name, const Slot& otherwise) {
   Slot s = number_slot(p, name, otherwise);
-  if (s.texture == none && !(luminance(s.value) > 0)) s.value = Rgb(min_alpha);
+  if (s.texture == none && !(luminance(s.value) >= min_alpha)) {
+    note(p.loader, p.node, fmt::format("{} is rendered as {:g}: microfacets are never smoother", name, min_alpha));
+    s.value = Rgb(min_alpha);
+  }
   limit_width(p, name, s);
   return s;
 }
@@ -195,7 +198,7 @@ void principled(Params& p, Material& m) {
       {"spec_trans", &m.spec_trans}, {"spec_tint", &m.spec_tint},     {"sheen", &m.sheen},
       {"sheen_tint", &m.sheen_tint}, {"clearcoat", &m.clearcoat},     {"clearcoat_gloss", &m.clearcoat_gloss},
       {"flatness", &m.flatness}};
-  for (const auto& [name, target] : slots) *target = number_slot(p, name, *target);
+  for (const auto& [name, target] : slots) *target = number_slot(p, name, *target, Colour::reflectance);
   m.ior = float(number(p, "eta", 1.5));
   if (has(p, "specular")) {  // Burley 2012: reflectance at normal incidence is 0.08 times this
     const double specular = number(p, "specular", 0.5);

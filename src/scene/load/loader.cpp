@@ -90,7 +90,7 @@ void fail(const Loader& loader, const Node& node, const std::string& text) {
 }
 
 void note(Loader& loader, const Node& node, const std::string& text) {
-  const std::string what = fmt::format("<{} type=\"{}\"> {}", node.tag, node.type, text);
+  const std::string what = fmt::format("<{} {}> {}", node.tag, node.type.empty() ? node.name : node.type, text);
   if (loader.said.insert(what).second)
     loader.scene.notes.push_back(one_line(place(loader.document, node) + ": " + text));
 }

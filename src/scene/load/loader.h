@@ -53,7 +53,7 @@ struct Loader {
 
 /// Throws Error "file:line: <element>: text".
 [[noreturn]] void fail(const Loader& loader, const Node& node, const std::string& text);
-/// Adds a note about the element; the same text is said once, with the first place.
+/// Adds a note about the element; the same text is said once of what has this type or name, with the first place.
 void note(Loader& loader, const Node& node, const std::string& text);
 /// "unknown shape", say, or "has no type" where it has none.
 std::string unknown(const Node& node);
@@ -171,7 +171,7 @@ Slot slot_of(Loader& loader, const Node& node, Colour kind);
 /// checkerboards with their colours exchanged.
 Slot as_number(Params& params, const Slot& s);
 /// A parameter that may be a number or such a texture.
-Slot number_slot(Params& params, const char* name, const Slot& otherwise);
+Slot number_slot(Params& params, const char* name, const Slot& otherwise, Colour kind = Colour::ratio);
 /// Both multiplied; a constant if both are.
 Slot product(Params& params, const Slot& a, const Slot& b);
 /// A parameter that has to be one colour.

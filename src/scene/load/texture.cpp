@@ -302,9 +302,9 @@ Slot as_number(Params& params, const Slot& s) {
   return grey;
 }
 
-Slot number_slot(Params& params, const char* name, const Slot& otherwise) {
+Slot number_slot(Params& params, const char* name, const Slot& otherwise, Colour kind) {
   const Node* node = find(params, {name});
-  return node == nullptr ? otherwise : as_number(params, slot_of(params.loader, *node, Colour::ratio));
+  return node == nullptr ? otherwise : as_number(params, slot_of(params.loader, *node, kind));
 }
 
 Slot product(Params& params, const Slot& a, const Slot& b) {

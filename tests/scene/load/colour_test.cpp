@@ -324,10 +324,12 @@ TEST(Colour, WhatCannotBeSeenIsTold) {
 
 TEST(Colour, NumbersBeyondTheirRangeAreTold) {
   const Scene s = load_inside(
-      "<bsdf type='blendbsdf'><float name='weight' value='5'/><bsdf type='diffuse'/><bsdf type='roughplastic'><float "
-      "name='alpha' value='-1'/></bsdf></bsdf>");
+      "<bsdf type='blendbsdf'><float name='weight' value='5'/><bsdf type='principled'><float name='metallic' "
+      "value='2'/></bsdf><bsdf type='roughplastic'><float name='alpha' value='-1'/></bsdf></bsdf>");
   EXPECT_TRUE(says(s.notes, "<float name=\"weight\">: a number above 1 where a share is meant: it was set to 1"));
+  EXPECT_TRUE(says(s.notes, "<float name=\"metallic\">: a number above 1 where a share is meant: it was set to 1"));
   EXPECT_TRUE(says(s.notes, "<float name=\"alpha\">: a negative number: it was set to 0"));
+  EXPECT_TRUE(says(s.notes, "<bsdf type=\"roughplastic\">: alpha is rendered as 0.0001"));
   EXPECT_SAYS(error_of("<bsdf type='diffuse'><spectrum name='reflectance' type='wild'/></bsdf>"),
               "unknown spectrum; supported: uniform, d65");
 }
