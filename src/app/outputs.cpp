@@ -77,7 +77,7 @@ std::vector<Named> written(const RenderArguments& a) {
   std::vector<Named> out;
   add(out, "-o", a.out);
   add(out, "the record", with_extension(a.out, ".json"));
-  if (a.png && !is_png(a.out)) add(out, "--png", with_extension(a.out, ".png"));
+  add(out, "--png", png_beside(a));
   add(out, "--log", a.log);
   add(out, "--checkpoint", a.checkpoint);
   add(out, "--save-fields", a.save_fields);
@@ -232,8 +232,12 @@ void write_image(const RenderArguments& a, const Scene& scene, const Accel& acce
   if (!a.quiet) say(stdout, "{}\n", a.out);
 }
 
+std::string png_beside(const RenderArguments& a) {
+  return a.png && !is_png(a.out) ? with_extension(a.out, ".png") : "";
+}
+
 void write_png_beside(const RenderArguments& a, const RenderState& state) {
-  const std::string png = with_extension(a.out, ".png");
+  const std::string png = png_beside(a);
   write_png(png, develop(state.film));
   if (!a.quiet) say(stdout, "{}\n", png);
 }

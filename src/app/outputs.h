@@ -40,7 +40,8 @@ void check_record(const std::string& image);
 void write_record(const RenderArguments&, const Run&, const RenderState&);
 /// Image, features and record; prints what it wrote, unless told to be quiet.
 void write_image(const RenderArguments&, const Scene&, const Accel&, Run&, const RenderState&);
-/// The same of the tonemapped image beside it.
+/// Name of the tonemapped image beside it; empty where there is to be none, or the image itself is one.
+std::string png_beside(const RenderArguments&);
 void write_png_beside(const RenderArguments&, const RenderState&);
 /// Of rendering, from save to save.
 inline constexpr double save_seconds = 60;

@@ -117,14 +117,13 @@ std::string left_alone(const RenderArguments& a, const Spared& spared) {
 // What a render without a sample does not write.
 std::string unwritten(const RenderArguments& a) {
   std::vector<std::string> names = {a.out};
-  for (const std::string& name : {a.checkpoint, a.save_fields, a.techniques})
+  for (const std::string& name : {png_beside(a), a.checkpoint, a.save_fields, a.techniques})
     if (!name.empty()) names.push_back(name);
   return listed(names, "is not written", "are not written");
 }
 
 std::string interruption(const RenderArguments& a, const Spared& spared, const Film& film) {
-  if (!has_samples(film))
-    return "interrupted before the first sample that is in the image; " + unwritten(a);
+  if (!has_samples(film)) return "interrupted before the first sample that is in the image; " + unwritten(a);
   const std::string rest = (spared.image ? "" : fmt::format("; {} has what was done", a.out)) + left_alone(a, spared);
   if (film.passes > 0) return fmt::format("interrupted after {:.1f} spp{}", spp_of(film), rest);
   const double share = 1 - double(film.chunks) / chunk_count(film);
@@ -226,7 +225,7 @@ void write_all(const RenderArguments& a, const Scene& scene, const Accel& accel,
   });
   const bool shows = has_samples(state.film) && !spared.image;
   if (shows) writes.emplace_back([&] { write_image(a, scene, accel, run, state); });
-  if (shows && a.png && !is_png(a.out)) writes.emplace_back([&] { write_png_beside(a, state); });
+  if (shows && !png_beside(a).empty()) writes.emplace_back([&] { write_png_beside(a, state); });
   if (run.options.techniques && begun && !spared.image)
     writes.emplace_back([&] { write_pyramid(state.pyramid, state.film, a.techniques); });
   writes.emplace_back([&] {

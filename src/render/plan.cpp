@@ -88,21 +88,24 @@ struct CameraKeeper {
   const Camera camera;
 };
 
+// Error of the worse of the two over that of the better one; 1 where nothing could be compared.
+double times_worse(const Pilot& p) { return p.ratio > 0 ? std::max(p.ratio, 1 / p.ratio) : 1; }
+
 std::string describe(const Pilot& p) {
   if (p.passes == 0) return "the pilot saw nothing to compare";
-  const std::string times = p.ratio > most_trusted       ? fmt::format("more than {:g}", most_trusted)
-                            : 1 / p.ratio > most_trusted ? fmt::format("less than {:g}", 1 / most_trusted)
-                                                         : fmt::format("{:.2f}", p.ratio);
+  const std::string times = !p.saves_more() ? fmt::format("{:.2f}", p.ratio)
+                            : p.ratio > 1   ? fmt::format("more than {:g}", most_trusted)
+                                            : fmt::format("less than {:g}", 1 / most_trusted);
   return fmt::format("path tracing leaves {} times the error after equal time{}", times,
                      p.settled ? "" : "; the render looks again");
 }
 
 }  // namespace
 
-bool Pilot::saves_more() const { return std::max(ratio, 1 / ratio) > most_trusted; }
+bool Pilot::saves_more() const { return times_worse(*this) > most_trusted; }
 
 double Pilot::saved_seconds() const {
-  return ratio > 0 && budget < infinity ? budget * (std::min(std::max(ratio, 1 / ratio), most_trusted) - 1) : 0;
+  return budget < infinity ? budget * (std::min(times_worse(*this), most_trusted) - 1) : 0;
 }
 
 double least_budget(const Camera& camera) { return least_time * 1e-6 * pixels_of(camera); }
