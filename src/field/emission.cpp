@@ -82,10 +82,16 @@ float disk_mix(const Fields* fields, uint32_t region) {
   return fields && region < fields->disk.cells.size() ? fields->disk.cells[region].mix : 0;
 }
 
+// Density on the unit disk, which was stretched to the square.
+float disk_density(const Field& disk, uint32_t region, const Vec2& square) {
+  const Vec3 at = from_square(square);
+  return density(disk.nodes, disk.cells[region].root, square) * square_density({at.x, at.y, 1});
+}
+
 // Density of the start's place on the disk, per area.   (V6)
 float disk_pdf(const Scene& scene, const Fields* fields, uint32_t region, const Vec2& square) {
   const float mix = disk_mix(fields, region), even = (1 - mix) * inv_pi;
-  const float guided = mix > 0 ? mix * disk_density(fields->disk.nodes, fields->disk.cells[region].root, square) : 0;
+  const float guided = mix > 0 ? mix * disk_density(fields->disk, region, square) : 0;
   return (even + guided) / (scene.radius * scene.radius);
 }
 

@@ -28,12 +28,19 @@ Vec3 from_center(const Fields& fields, const Field& field, uint32_t cell, const 
   return v / t;
 }
 
-// local: of w in the cell's frame, above its horizon.
-float strata_pdf(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p, const Vec3& local) {
-  if (fields.structure != Structure::adaptive) return patch_density(field.nodes, field.cells[cell].root, local);
-  float stretch;
-  const Vec3 at = centered(fields, field, cell, p, local, stretch);
-  return density(field.nodes, field.cells[cell].root, to_square(at)) * square_density(at) * stretch;
+// As it is seen from the cell's centre; see centered.
+Vec3 shifted(const Vec2& d, const Vec3& local, float& density) {
+  const float along = d.x * local.x + d.y * local.y;
+  const float cosine = std::sqrt(along * along + 1 - glm::dot(d, d)), t = cosine - along;
+  density = t * t / cosine;
+  return {d.x + t * local.x, d.y + t * local.y, t * local.z};
+}
+
+// Through a cell's portal alone. (G12)
+float portal_pdf(const Fields& fields, const Field& field, const Opening& o, const Vec3& p, const Vec3& w) {
+  Crossing at;
+  if (!cross(fields.table.portals[o.portal], o.portal, p, w, at)) return 0;
+  return at.density * density(field.nodes, field.portals[o.cell].root, at.square);
 }
 
 Vec3 sample_strata(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p, const Vec2& u, float& pdf) {
@@ -71,19 +78,24 @@ size_t find_stratum(const Field& field, const FieldCell& cell, Vec2 at) {
 
 Vec3 centered(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p, const Vec3& local,
               float& density) {
-  const Vec2 d = shift(fields, field, cell, p);
-  const float along = d.x * local.x + d.y * local.y;
-  const float cosine = std::sqrt(along * along + 1 - glm::dot(d, d)), t = cosine - along;
-  density = t * t / cosine;
-  return {d.x + t * local.x, d.y + t * local.y, t * local.z};
+  return shifted(shift(fields, field, cell, p), local, density);
 }
 
 float pdf(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p, const Vec3& w) {
   const Vec3 local = fields.cells[cell].frame.to_local(w);
   if (!(local.z > 0)) return 0;
-  const float strata = strata_pdf(fields, field, cell, p, local);
+  const uint32_t root = field.cells[cell].root;
+  if (fields.structure != Structure::adaptive) return patch_density(field.nodes, root, local);
+  float per_center, stretch;
+  const Vec2 at = to_square(shifted(shift(fields, field, cell, p), local, stretch), per_center);
+  const float per_angle = per_center * stretch;
   const Opening o = opening(fields, field, cell, p);
-  return o.share > 0 ? (1 - o.share) * strata + o.share * pdf(fields, field, o, p, w) : strata;  // (G11)
+  if (!(o.share > 0)) return per_angle * density(field.nodes, root, at);
+  const float strata = (1 - o.share) * per_angle;
+  Crossing on;
+  if (!cross(fields.table.portals[o.portal], o.portal, p, w, on)) return strata * density(field.nodes, root, at);
+  const Vec2 d = densities(field.nodes, {root, at}, {field.portals[o.cell].root, on.square});
+  return strata * d.x + o.share * on.density * d.y;  // (G11), (G12)
 }
 
 Vec3 sample(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p, Vec2 u, float& density) {
@@ -96,7 +108,7 @@ Vec3 sample(const Fields& fields, const Field& field, uint32_t cell, const Vec3&
   }
   if (o.share > 0) u.x = std::min((u.x - o.share) / (1 - o.share), one_minus_epsilon);
   const Vec3 w = sample_strata(fields, field, cell, p, u, density);
-  if (o.share > 0) density = (1 - o.share) * density + o.share * pdf(fields, field, o, p, w);
+  if (o.share > 0) density = (1 - o.share) * density + o.share * portal_pdf(fields, field, o, p, w);
   return w;
 }
 

@@ -109,14 +109,17 @@ float narrowest(const Portal& portal, const double* sums, float most) {
 }
 
 bool cross(const Portal& portal, uint32_t number, const Vec3& p, const Vec3& w, Crossing& out) {
-  const int a = portal.axis;
-  out.distance = (portal.center[a] - p[a]) / w[a];
+  const int a = portal.axis, b = first_beside(a), c = second_beside(a);
+  const float per_axis = 1 / w[a], scale = 1 / portal.radius;
+  out.distance = (portal.center[a] - p[a]) * per_axis;
   if (!(out.distance > 0 && out.distance < infinity)) return false;
-  const Vec3 v = (p + out.distance * w - portal.center) / portal.radius;
-  const Vec3 at(v[first_beside(a)], v[second_beside(a)], 0);
-  if (!(glm::dot(at, at) < 1)) return false;
-  out.cell = 2 * number + (w[a] > 0);
-  out.square = to_square(at);
+  const float x = (p[b] - portal.center[b] + out.distance * w[b]) * scale,
+              y = (p[c] - portal.center[c] + out.distance * w[c]) * scale;
+  if (!(x * x + y * y < 1)) return false;
+  out.cell = 2 * number + (per_axis > 0);
+  float per_disk;
+  out.square = to_square({x, y, 1}, per_disk);
+  out.density = per_disk * sqr(out.distance * scale) * std::abs(per_axis);  // (G12)
   return true;
 }
 
@@ -129,14 +132,6 @@ Opening opening(const Fields& fields, const Field& field, uint32_t cell, const V
   if (!(std::abs(across) > 1e-3f * portal.radius)) return {};
   const uint32_t seen = 2 * uint32_t(c.portal) + (across > 0);
   return {c.portal, seen, c.through * field.portals[seen].mix};
-}
-
-float pdf(const Fields& fields, const Field& field, const Opening& opening, const Vec3& p, const Vec3& w) {
-  const Portal& portal = fields.table.portals[opening.portal];
-  Crossing at;
-  if (!cross(portal, opening.portal, p, w, at)) return 0;
-  const float on_disk = disk_density(field.nodes, field.portals[opening.cell].root, at.square);
-  return on_disk * sqr(at.distance / portal.radius) / std::abs(w[portal.axis]);  // (G12)
 }
 
 Vec3 sample(const Fields& fields, const Field& field, const Opening& opening, const Vec3& p, const Vec2& u) {

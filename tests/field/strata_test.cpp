@@ -52,7 +52,9 @@ std::vector<StrataNode> nested() {
 }
 
 void expect_same_square(const Vec3& w) {
-  const Vec2 at = to_square(w);
+  float density;
+  const Vec2 at = to_square(w, density);
+  EXPECT_NEAR(density, square_density(w), 1e-6f);
   ASSERT_TRUE(at.x >= 0 && at.x < 1 && at.y >= 0 && at.y < 1) << at.x << ' ' << at.y;
   const Vec3 back = from_square(at);
   EXPECT_NEAR(back.x, w.x, 4e-7f);
@@ -167,6 +169,17 @@ TEST(Strata, DensityIsTheProductOfShares) {
   EXPECT_NEAR(density(nodes, 0, in_365 + part), d, 1e-5 * d);
   EXPECT_NEAR(density(nodes, 0, in_3 + part), 2200.0 / 4096 / 4096, 1e-7);
   EXPECT_NEAR(density(nodes, 0, Vec2(0.26f, 0.01f)), 1400.0 / 4096, 1e-6);
+}
+
+TEST(Strata, DensitiesOfTwoTreesAreThoseOfEach) {
+  const auto nodes = nested();
+  Sampler sampler = make_sampler(SamplerKind::independent, 2, Side::camera, 0, 0);
+  for (uint32_t a = 0; a < 4; ++a)
+    for (uint32_t b = 0; b < 4; ++b)
+      for (int i = 0; i < 1000; ++i) {
+        const Vec2 u = sampler.next2(), v = sampler.next2();
+        ASSERT_EQ(densities(nodes, {a, u}, {b, v}), Vec2(density(nodes, a, u), density(nodes, b, v))) << a << ' ' << b;
+      }
 }
 
 // Density that comes with a sample is that of its place, at both ends of u too; strata of one step are found.

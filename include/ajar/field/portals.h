@@ -20,6 +20,7 @@ struct Crossing {
   uint32_t cell = none;  ///< among Field::portals
   Vec2 square{0};        ///< on the disk, as the square of its strata (G1)
   float distance = 0;    ///< from the ray's origin
+  float density = 0;     ///< area of the square per solid angle at the ray's origin
 };
 /// w: unit. False where the ray misses the disk.
 bool cross(const Portal& portal, uint32_t number, const Vec3& p, const Vec3& w, Crossing& out);
@@ -37,8 +38,6 @@ struct Opening {
   float share = 0;  ///< h of (G11): of the field's directions, those that are drawn through it
 };
 Opening opening(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p);
-/// Density per solid angle with which a direction is drawn through it. (G12)
-float pdf(const Fields& fields, const Field& field, const Opening& opening, const Vec3& p, const Vec3& w);
 /// u in [0,1)^2.
 Vec3 sample(const Fields& fields, const Field& field, const Opening& opening, const Vec3& p, const Vec2& u);
 

@@ -41,11 +41,16 @@ inline constexpr int most_levels = 5;
 
 /// The unit square over the hemisphere about +z: the unit disk of the direction's (x, y), stretched along its radii to
 /// the square [-1,1]^2. Without trigonometry, so that both ways are exact to rounding.
-inline Vec2 to_square(const Vec3& local) {
+/// density: area of the unit square per solid angle at the direction; with 1 for local.z, per area of the unit disk.
+inline Vec2 to_square(const Vec3& local, float& density) {
   const float r2 = local.x * local.x + local.y * local.y, m = std::max(std::abs(local.x), std::abs(local.y));
-  if (m == 0) return Vec2(0.5f);
-  const float stretch = std::sqrt(r2) / m;
+  const float stretch = r2 > 0 ? std::sqrt(r2) / m : 1;
+  density = 0.25f * local.z * stretch * stretch;
   return glm::clamp(Vec2(local) * (0.5f * stretch) + 0.5f, Vec2(0), Vec2(one_minus_epsilon));
+}
+inline Vec2 to_square(const Vec3& local) {
+  float density;
+  return to_square(local, density);
 }
 inline Vec3 from_square(const Vec2& square) {
   const Vec2 a = 2.0f * square - 1.0f;
@@ -53,7 +58,7 @@ inline Vec3 from_square(const Vec2& square) {
   const float shrink = l2 > 0 ? m / std::sqrt(l2) : 0;
   return {a.x * shrink, a.y * shrink, safe_sqrt(1 - m * m)};
 }
-/// Area of the unit square per solid angle at a direction.
+/// The density of to_square alone.
 inline float square_density(const Vec3& local) {
   const float x2 = local.x * local.x, y2 = local.y * local.y, m2 = std::max(x2, y2);
   return local.z * (m2 > 0 ? (x2 + y2) / m2 : 1) * 0.25f;
@@ -84,8 +89,13 @@ Vec3 sample_patch(const std::vector<StrataNode>& nodes, uint32_t root, const Vec
 
 /// Density over the unit square of the tree under node root.
 float density(const std::vector<StrataNode>& nodes, uint32_t root, const Vec2& at);
-/// The same per area of the unit disk, which was stretched to the square.
-float disk_density(const std::vector<StrataNode>& nodes, uint32_t root, const Vec2& square);
+/// A point of the square of one of several trees.
+struct TreePlace {
+  uint32_t root = 0;
+  Vec2 at{0};
+};
+/// Densities at two of them, in less time than one after the other.
+Vec2 densities(const std::vector<StrataNode>& nodes, const TreePlace& a, const TreePlace& b);
 /// Draws a point of the unit square; u in [0,1)^2. Leaves its density.
 Vec2 sample(const std::vector<StrataNode>& nodes, uint32_t root, const Vec2& u, float& density);
 
