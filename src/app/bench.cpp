@@ -148,6 +148,10 @@ void run_bench_command(const BenchArguments& a) {
   write_report(nlohmann::json(results), options.folder);
   if (!a.quiet) say(stdout, "{}\n", (options.folder / "report.html").string());
   if (results["interrupted"]) throw Interrupted{"interrupted; the same command goes on from here"};
+  if (const nlohmann::ordered_json& refused = results["refused"]; !refused.empty())
+    throw Error(
+        fmt::format("{}{}", refused[0].get<std::string>(),
+                    refused.size() > 1 ? fmt::format("; {} more references are refused", refused.size() - 1) : ""));
 }
 
 }  // namespace

@@ -30,6 +30,7 @@ struct Bench {
   std::vector<Stand> stands = {};
   double start = 0, units = 0, done = 0;  ///< of runs; a unit is a budget
   bool stopped = false;
+  std::vector<std::string> refused = {};  ///< why, of references
 
   fs::path run_path(const Stand& stand, const Method& method, uint64_t seed) const {
     return options.folder / "runs" / stand.scene->name / fmt::format("{}-seed{}.json", method.name, seed);
@@ -221,6 +222,7 @@ Json results_json(const Bench& bench) {
                {"command", bench.options.command},
                {"quick", suite.quick},
                {"interrupted", bench.stopped},
+               {"refused", bench.refused},
                {"budget", to_json(suite.budget)},
                {"seeds", suite.seeds},
                {"baseline", suite.baseline},
@@ -267,6 +269,7 @@ void claim_folder(const Bench& bench) {
   const std::string folder = bench.options.folder.string(), elsewhere = "name another folder with -o";
   Json key = to_json(bench.suite);
   key["version"] = bench.options.version, key["build"] = bench.options.build;
+  key["threads"] = machine_json(bench.options.threads)["threads"];
   if (!is_there(path.string())) {
     make_folder(folder);
     write_text(path.string(), text_of(key, 1) + "\n");
@@ -274,6 +277,11 @@ void claim_folder(const Bench& bench) {
   }
   Json there = read_json(path, "delete the folder, or name another one with -o");
   if (there == key) return;
+  const Json threads = there.is_object() ? there.value("threads", key["threads"]) : Json();
+  if (there.is_object()) there["threads"] = key["threads"];
+  if (there == key)
+    throw Error(fmt::format("{}: holds runs by {} threads, whose times are others; write --threads {}, or {}", folder,
+                            threads.dump(), threads.dump(), elsewhere));
   if (there.is_object()) there["version"] = key["version"], there["build"] = key["build"];
   if (there == key)
     throw Error(
@@ -298,8 +306,13 @@ void make_references(Bench& bench) {
     if (!stand.reference) {
       LoadedScene loaded = load(bench.suite, *stand.scene);
       build(loaded);
-      stand.reference = make_reference(bench.suite, *stand.scene, loaded, bench.options);
-      bench.stopped = !stand.reference;
+      try {
+        stand.reference = make_reference(bench.suite, *stand.scene, loaded, bench.options);
+        bench.stopped = !stand.reference;
+      } catch (const ReferenceRefused& refused) {
+        stand.json["skipped"] = refused.what();
+        bench.refused.push_back(refused.what());
+      }
     }
     if (stand.reference) set_reference(bench, stand);
   }

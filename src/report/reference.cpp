@@ -171,11 +171,10 @@ void require_agreement(const Suite& suite, const BenchScene& scene, const Agreem
   if (agreement.p >= least_agreement) return;
   const BlockTest& b = agreement.worst;
   const double relative = (b.first.mean - b.second.mean) / std::max(std::abs(b.second.mean), 1e-30);
-  throw Error(fmt::format(
+  throw ReferenceRefused(fmt::format(
       "{}: scenes \"{}\".reference: {} and {} disagree: channel {} of the {}x{} pixels at {},{} has means {:.6g} +- "
       "{:.2g} and {:.6g} +- {:.2g}, {:+.2g} %, p = {:.1g}; one is wrong here or misses what is rare: run longer, or "
-      "name "
-      "other integrators",
+      "name other integrators",
       suite.path.string(), scene.name, scene.parts[0].options.integrator, scene.parts[1].options.integrator, b.channel,
       b.width, b.height, b.x, b.y, b.first.mean, std::sqrt(b.first.variance), b.second.mean,
       std::sqrt(b.second.variance), 100 * relative, agreement.p));
@@ -183,7 +182,7 @@ void require_agreement(const Suite& suite, const BenchScene& scene, const Agreem
 
 void require_light(const Picture& image, const fs::path& path) {
   if (std::all_of(image.pixels.begin(), image.pixels.end(), [](float value) { return value == 0; }))
-    throw Error(
+    throw ReferenceRefused(
         fmt::format("{}: is black, nothing can be measured against it; does light reach the camera within max_depth?",
                     path.string()));
 }

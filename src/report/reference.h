@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "ajar/accel/accel.h"
+#include "ajar/core/error.h"
 #include "ajar/render/render.h"
 #include "ajar/report/bench.h"
 
@@ -25,6 +26,11 @@ struct LoadedScene {
   std::unique_ptr<Accel> accel;  ///< null before build
   double load_seconds = 0, build_seconds = 0;
 };
+/// A reference that was rendered and is none. Of that scene nothing can be measured; of others it can.
+struct ReferenceRefused : Error {
+  using Error::Error;
+};
+
 /// Loads with the suite's defines, size and depth (Scene::hints). Throws Error that names suite and scene.
 LoadedScene load(const Suite& suite, const BenchScene& scene);
 void build(LoadedScene& loaded);
@@ -40,7 +46,7 @@ struct Reference {
 std::optional<Reference> find_reference(const Suite& suite, const BenchScene& scene, const Scene& loaded,
                                         const BenchOptions& options);
 /// Renders the two parts in batches, going on from those that an earlier call left; nothing when the watch stops it.
-/// Throws Error where the two disagree: then the batches stay for a longer run.
+/// Throws ReferenceRefused where the two disagree (then the batches stay for a longer run), or find no light at all.
 std::optional<Reference> make_reference(const Suite& suite, const BenchScene& scene, const LoadedScene& loaded,
                                         const BenchOptions& options);
 

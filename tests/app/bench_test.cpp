@@ -95,6 +95,22 @@ TEST_F(BenchCommand, QuickAndReferences) {
   EXPECT_FALSE(fs::exists(unclaimed));
 }
 
+TEST_F(BenchCommand, ARefusedReferenceIsAnErrorAtTheEnd) {
+  auto json = nlohmann::json::parse(std::ifstream(suite));
+  json["scenes"].push_back(json["scenes"][0]);
+  json["scenes"][1]["name"] = "black";
+  json["scenes"][1]["file"] = kit::source_path("scenes/mirrors/mirrors.xml");
+  std::ofstream(suite) << json.dump();
+  try {
+    run({suite, "-o", out});
+    ADD_FAILURE() << "was not refused";
+  } catch (const Error& e) {
+    EXPECT_TRUE(std::string(e.what()).ends_with("does light reach the camera within max_depth?")) << e.what();
+  }
+  EXPECT_EQ(results()["scenes"][0]["methods"].size(), 1u);
+  EXPECT_TRUE(fs::exists(out + "/report.html"));
+}
+
 TEST_F(BenchCommand, CommandsAreForAShell) {
   const std::string place = out + " it's\xe9";  // nor is it UTF-8
   run({suite, "-o", place});

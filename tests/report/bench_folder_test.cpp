@@ -43,6 +43,17 @@ TEST_F(Bench, AFolderOfAnotherSuiteIsRefused) {
   EXPECT_EQ(error_of(other), "");
 }
 
+// Whoever goes on elsewhere, or leaves out --threads, would mix the times of one machine with those of another.
+TEST_F(Bench, OtherThreadsAreRefused) {
+  run(small());
+  options.threads = 1;
+  EXPECT_NE(error_of(small()).find("out: holds runs by 2 threads, whose times are others; write --threads 2, or name"),
+            std::string::npos)
+      << error_of(small());
+  options.build = "other";
+  EXPECT_NE(error_of(small()).find("out: holds runs of another build of Ajar"), std::string::npos) << error_of(small());
+}
+
 TEST_F(Bench, AFolderOfAnotherBuildIsRefused) {
   run(small());
   options.build = "other";

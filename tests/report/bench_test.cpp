@@ -188,19 +188,27 @@ TEST_F(Bench, IntegratorsThatDisagreeMakeNoReference) {
   json["scenes"][0]["size"] = {32, 24};
   json["scenes"][0]["max_depth"] = 5;
   for (Json& part : json["scenes"][0]["reference"]["made_by"]) part["spp"] = 256;
-  const std::string error = error_of(json);
+  json["scenes"].push_back(small()["scenes"][0]);
+  json["scenes"][1]["name"] = "other";
+  const Json results = run(json);
+  ASSERT_EQ(results["refused"].size(), 1u);
+  const std::string error = results["refused"][0];
   EXPECT_NE(error.find("scenes \"s\".reference: light and path disagree: channel "), std::string::npos) << error;
   EXPECT_NE(error.find("has means "), std::string::npos);
   const fs::path stem = options.references / "s-32x24-depth5";
   EXPECT_FALSE(fs::exists(stem.string() + ".exr"));
   EXPECT_TRUE(fs::exists(stem.string() + ".parts")) << "a longer run goes on from here";
+  EXPECT_EQ(results["scenes"][0]["skipped"], error);
+  EXPECT_EQ(results["scenes"][0]["methods"].size(), 0u);
+  EXPECT_EQ(results["scenes"][1]["methods"].size(), 2u) << "the others are measured";
 }
 
 TEST_F(Bench, ABlackReferenceIsRefused) {
   Json json = small();  // nothing but mirrors on the way to the lamp: too many for 5 edges
   json["scenes"][0]["file"] = kit::source_path("scenes/mirrors/mirrors.xml");
   json["scenes"][0]["max_depth"] = 5;
-  EXPECT_NE(error_of(json).find("s-16x12-depth5.exr: is black"), std::string::npos) << error_of(json);
+  const std::string why = run(json)["refused"][0];
+  EXPECT_NE(why.find("s-16x12-depth5.exr: is black"), std::string::npos) << why;
   EXPECT_FALSE(fs::exists(options.references / "s-16x12-depth5.exr"));
 }
 

@@ -31,7 +31,8 @@ struct BenchOptions {
 
 /// Makes the references that are missing, renders every method on every scene with every seed, the methods of a scene
 /// and seed in turns, and writes results.json, results.csv, images and runs. When the watch stops it, writes what is
-/// done and "interrupted": true; called again it goes on. Throws Error, before anything is rendered where that can be
+/// done and "interrupted": true; called again it goes on. A scene whose reference is refused is left out, and
+/// "refused" lists why. Throws Error, before anything is rendered where that can be
 /// known: also when the folder holds another suite's runs.
 nlohmann::ordered_json run_bench(const Suite& suite, const BenchOptions& options);
 
