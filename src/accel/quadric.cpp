@@ -1,11 +1,13 @@
 #include "quadric.h"
 
+#include "ajar/core/angle.h"
+
 namespace ajar {
 namespace {
 
-float turn(double y, double x) {
-  const double phi = std::atan2(y, x) / (2 * std::numbers::pi);
-  return float(phi < 0 ? phi + 1 : phi);
+float turn(float y, float x) {
+  const float phi = fast_atan2(y, x) / (2 * pi);
+  return phi < 0 ? phi + 1 : phi;
 }
 
 // Roots of |f + (t - tc) d|^2 = 1 with f the point of the ray nearest to the centre: no cancellation for far rays
@@ -49,10 +51,10 @@ bool intersect_quadric(ShapeKind kind, const glm::dvec3& o, const glm::dvec3& d,
 }
 
 Vec2 quadric_uv(ShapeKind kind, const glm::dvec3& p) {
-  const float around = turn(p.y, p.x);
-  if (kind == ShapeKind::disk) return {float(std::sqrt(p.x * p.x + p.y * p.y)), around};
+  const float around = turn(float(p.y), float(p.x)), from_axis = float(std::sqrt(p.x * p.x + p.y * p.y));
+  if (kind == ShapeKind::disk) return {from_axis, around};
   if (kind == ShapeKind::cylinder) return {around, float(p.z)};
-  return {around, float(std::acos(std::clamp(p.z, -1.0, 1.0)) / std::numbers::pi)};
+  return {around, fast_atan2(from_axis, float(p.z)) * inv_pi};
 }
 
 }  // namespace ajar

@@ -23,7 +23,7 @@ int processor_count() { return tbb::info::default_concurrency(); }
 
 Threads::Threads(int count) {
   const int processors = processor_count();
-  if (count <= 0) count = processors;
+  count = count <= 0 ? processors : std::min(count, most_threads);
   arena_.reset(new Arena(count));
   if (count > processors) arena_->most.emplace(tbb::global_control::max_allowed_parallelism, size_t(count));
 }

@@ -107,6 +107,7 @@ void finish_pass(Film& film) {
 }
 
 Picture develop(const Film& film) {
+  if (film.width < 1 || film.height < 1) throw Error("develop: a film without pixels; render one");
   Picture out{film.width, film.height, {"R", "G", "B"}, std::vector<float>(3 * film.pixels())};
   const double share = share_of_pass(film);
   const float per_path = 1 / float(film.pixels());

@@ -222,6 +222,7 @@ Metadata read_metadata(const std::string& path) {
 }
 
 Picture select(const Picture& picture, const std::vector<std::string>& names) {
+  require_sound("select", picture);
   std::vector<size_t> from;
   for (const std::string& name : names) {
     const auto found = std::find(picture.names.begin(), picture.names.end(), name);
@@ -264,6 +265,7 @@ Picture read_rgb(const std::string& path) {
 }
 
 Picture crop(const Picture& picture, int x, int y, int width, int height) {
+  require_sound("crop", picture);
   if (x < 0 || y < 0 || width <= 0 || height <= 0 || x > picture.width - width || y > picture.height - height)
     throw Error(
         fmt::format("a crop of {}x{} pixels at ({}, {}) does not lie in the picture of {}x{}; choose a smaller one",

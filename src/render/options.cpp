@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "ajar/core/error.h"
+#include "ajar/core/parallel.h"
 
 namespace ajar {
 namespace {
@@ -28,7 +29,7 @@ void check(const RenderOptions& o) {
   require("seconds", o.seconds, o.seconds >= 0, "give it more than 0, or 0 for no limit");
   require("cpu_seconds", o.cpu_seconds, o.cpu_seconds >= 0, "give it more than 0, or 0 for no limit");
   require("noise", o.noise, o.noise >= 0, "give it a relMSE above 0, or 0 for no target");
-  require("threads", o.threads, o.threads >= 0, "give it 1 or more, or 0 for all");
+  require("threads", o.threads, o.threads >= 0 && o.threads <= most_threads, "give it 1 to 4096, or 0 for all");
   require("max_depth", o.max_depth, o.max_depth == -1 || o.max_depth >= 1,
           "give it 1 or more edges, or -1 for no limit");
   require("roulette_depth", o.roulette_depth, o.roulette_depth >= 0, "give it 0 or more edges");

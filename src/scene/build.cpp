@@ -164,12 +164,11 @@ uint32_t add_quadric(Scene& scene, ShapeKind kind, const Mat4& to_world, uint32_
   shape.kind = kind;
   shape.material = material;
   shape.to_world = to_world;
-  shape.to_object = glm::inverse(to_world);
   return append(scene, &Scene::shapes, shape);
 }
 
 uint32_t add_instance(Scene& scene, uint32_t group, const Mat4& to_world) {
-  return append(scene, &Scene::instances, Instance{group, to_world, glm::inverse(to_world)});
+  return append(scene, &Scene::instances, Instance{group, to_world});
 }
 
 uint32_t add_sphere(Scene& scene, const Vec3& center, float radius, uint32_t material) {
@@ -198,6 +197,7 @@ uint32_t add_light(Scene& scene, LightKind kind, const Slot& radiance) {
   light.direction = {0, -1, 0};
   light.to_world = kind == LightKind::spot || kind == LightKind::projector ? look_at({0, 0, 0}, {0, -1, 0}) : Mat4(1);
   light.cutoff = 40 * pi / 180, light.beam = 30 * pi / 180;
+  if (kind == LightKind::sun) light.cone = 1 - std::cos(0.2679f * pi / 180);
   return append(scene, &Scene::lights, light);
 }
 

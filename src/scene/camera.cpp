@@ -48,7 +48,7 @@ CameraRay make_ray(const Camera& c, const Vec3& o, const Vec3& q) {
 
 void set_matrices(Camera& c, const Mat4& to_world) {
   c.to_world = to_world;
-  c.to_camera = Mat4(glm::inverse(glm::dmat4(to_world)));
+  c.to_camera = inverse(to_world);
 }
 
 }  // namespace
@@ -92,6 +92,7 @@ float raster_factor(const Camera& c, const Vec3& o, const Vec3& x) {
 
 void set_perspective(Camera& c, float fov_x_degrees, const Mat4& to_world) {
   const float x = float(std::tan(double(fov_x_degrees) * std::numbers::pi / 360));
+  if (c.kind == CameraKind::orthographic) c.kind = CameraKind::perspective;
   c.plane = {x, x * float(c.height) / float(c.width)};
   set_matrices(c, to_world);
 }

@@ -160,6 +160,70 @@ bool all_finite(const Mat4& m) {
   return is_finite(Vec3(m[0])) && is_finite(Vec3(m[1])) && is_finite(Vec3(m[2])) && is_finite(Vec3(m[3]));
 }
 
+// Within a hundredth.
+bool is_round(const Mat4& m) {
+  const glm::dvec3 x(m[0]), y(m[1]), z(m[2]);
+  const double size = glm::dot(x, x), slack = 0.02 * size;
+  return std::abs(glm::dot(y, y) - size) < slack && std::abs(glm::dot(z, z) - size) < slack &&
+         std::abs(glm::dot(x, y)) < slack && std::abs(glm::dot(y, z)) < slack && std::abs(glm::dot(z, x)) < slack;
+}
+
+void check_shape(const Scene& scene, uint32_t id) {
+  const Shape& s = scene.shapes[id];
+  const Named part{"shape", id};
+  if (!all_finite(s.to_world) || !all_finite(s.to_object))
+    refuse(part, "its to_world cannot be inverted; give it finite numbers, and an extent each way");
+  if (s.kind == ShapeKind::sphere && !is_round(s.to_world))
+    refuse(part, "its to_world stretches the sphere; take add_globe and transform that, or an instance");
+  if (s.kind == ShapeKind::mesh) check_index(part, "mesh", s.mesh, scene.meshes, "meshes");
+  check_index(part, "material", s.material, scene.materials, "materials");
+  if (s.mask != none) check_index(part, "mask", s.mask, scene.materials, "materials");
+  if (s.group != none && s.group >= scene.groups)
+    refuse(part, fmt::format("its group is {}, and the scene has {}", s.group, scene.groups));
+  if (s.light == none) return;
+  if (s.group != none) refuse(part, "is a light and in a group; lights stand by themselves");
+  check_index(part, "light", s.light, scene.lights, "lights");
+  if (const Light& light = scene.lights[s.light]; light.kind != LightKind::area || light.shape != id)
+    refuse(part,
+           fmt::format("its light {} is not an area light of this shape; let add_area_light join the two", s.light));
+}
+
+void check_instance(const Scene& scene, size_t id) {
+  const Instance& i = scene.instances[id];
+  if (i.group >= scene.groups)
+    refuse({"instance", id}, fmt::format("its group is {}, and the scene has {}", i.group, scene.groups));
+  if (!all_finite(i.to_world) || !all_finite(i.to_object))
+    refuse({"instance", id}, "its to_world cannot be inverted; give it finite numbers, and an extent each way");
+}
+
+void check_light(const Scene& scene, uint32_t id) {
+  const Light& light = scene.lights[id];
+  const Named part{"light", id};
+  check_slot(scene, part, "radiance", light.radiance, true);
+  if (!(light.sampling_weight >= 0 && light.sampling_weight < infinity))
+    refuse(part, fmt::format("its sampling_weight is {}; give it 0 or more", light.sampling_weight));
+  if (!(max_abs(light.position) <= farthest)) refuse(part, fmt::format("stands farther than {} units away", farthest));
+  if (!is_finite(light.direction) || light.direction == Vec3(0)) refuse(part, "its direction is none");
+  if (light.kind == LightKind::sun && !(light.cone > 0 && light.cone <= 1))
+    refuse(part,
+           fmt::format("its cone is {}; give a sun one above 0, 1 at most, or take a directional light", light.cone));
+  if (light.kind == LightKind::area) {
+    check_index(part, "shape", light.shape, scene.shapes, "shapes");
+    if (scene.shapes[light.shape].light != id)
+      refuse(part,
+             fmt::format("its shape {} has another light, or none; let add_area_light join the two", light.shape));
+  }
+  if (light.kind != LightKind::envmap) return;
+  check_index(part, "environment", light.environment, scene.environments, "environments");
+  const float scale = scene.environments[light.environment].scale;
+  if (!(scale >= 0 && scale < infinity)) refuse(part, fmt::format("its scale is {}; give it 0 or more", scale));
+  const uint32_t image = scene.environments[light.environment].image;
+  check_index({"environment", light.environment}, "image", image, scene.images, "images");
+  check_image({"image", image}, scene.images[image]);
+}
+
+}  // namespace
+
 void check_camera(const Camera& c) {
   const auto refuse_camera = [](const std::string& what) { throw Error(fmt::format("scene: its camera {}", what)); };
   if (c.width < 1 || c.height < 1) refuse_camera("has less than a pixel; set its width and height");
@@ -174,46 +238,10 @@ void check_camera(const Camera& c) {
     refuse_camera("has no view; give it a field of view between 0 and 180 degrees");
   if (!(c.aperture >= 0 && c.aperture < infinity && c.focus > 0 && c.focus < infinity))
     refuse_camera("has a lens that is none; give it an aperture of 0 or more, and a focus beyond 0");
+  if (!(std::abs(c.near_clip) < infinity && c.far_clip > c.near_clip))
+    refuse_camera("has clip planes that are none; give it a near one that is finite, and a far one beyond it");
+  if (!std::isfinite(c.principal.x + c.principal.y)) refuse_camera("has a principal point that is not finite");
 }
-
-void check_shape(const Scene& scene, uint32_t id) {
-  const Shape& s = scene.shapes[id];
-  const Named part{"shape", id};
-  if (s.kind != ShapeKind::mesh && !all_finite(s.to_world)) refuse(part, "its to_world is not finite; give it numbers");
-  if (s.kind == ShapeKind::mesh) check_index(part, "mesh", s.mesh, scene.meshes, "meshes");
-  check_index(part, "material", s.material, scene.materials, "materials");
-  if (s.mask != none) check_index(part, "mask", s.mask, scene.materials, "materials");
-  if (s.group != none && s.group >= scene.groups)
-    refuse(part, fmt::format("its group is {}, and the scene has {}", s.group, scene.groups));
-  if (s.light == none) return;
-  check_index(part, "light", s.light, scene.lights, "lights");
-  if (const Light& light = scene.lights[s.light]; light.kind != LightKind::area || light.shape != id)
-    refuse(part,
-           fmt::format("its light {} is not an area light of this shape; let add_area_light join the two", s.light));
-}
-
-void check_light(const Scene& scene, uint32_t id) {
-  const Light& light = scene.lights[id];
-  const Named part{"light", id};
-  check_slot(scene, part, "radiance", light.radiance, true);
-  if (!(light.sampling_weight >= 0 && light.sampling_weight < infinity))
-    refuse(part, fmt::format("its sampling_weight is {}; give it 0 or more", light.sampling_weight));
-  if (!(max_abs(light.position) <= farthest)) refuse(part, fmt::format("stands farther than {} units away", farthest));
-  if (!is_finite(light.direction) || light.direction == Vec3(0)) refuse(part, "its direction is none");
-  if (light.kind == LightKind::area) {
-    check_index(part, "shape", light.shape, scene.shapes, "shapes");
-    if (scene.shapes[light.shape].light != id)
-      refuse(part,
-             fmt::format("its shape {} has another light, or none; let add_area_light join the two", light.shape));
-  }
-  if (light.kind != LightKind::envmap) return;
-  check_index(part, "environment", light.environment, scene.environments, "environments");
-  const uint32_t image = scene.environments[light.environment].image;
-  check_index({"environment", light.environment}, "image", image, scene.images, "images");
-  check_image({"image", image}, scene.images[image]);
-}
-
-}  // namespace
 
 void check_parts(const Scene& scene) {
   check_camera(scene.camera);
@@ -222,9 +250,7 @@ void check_parts(const Scene& scene) {
   for (size_t i = 0; i < scene.meshes.size(); ++i) check_mesh({"mesh", i}, scene.meshes[i]);
   for (uint32_t i = 0; i < scene.shapes.size(); ++i) check_shape(scene, i);
   for (uint32_t i = 0; i < scene.lights.size(); ++i) check_light(scene, i);
-  for (size_t i = 0; i < scene.instances.size(); ++i)
-    if (const uint32_t group = scene.instances[i].group; group >= scene.groups)
-      refuse({"instance", i}, fmt::format("its group is {}, and the scene has {}", group, scene.groups));
+  for (size_t i = 0; i < scene.instances.size(); ++i) check_instance(scene, i);
 }
 
 }  // namespace ajar

@@ -8,5 +8,7 @@ namespace ajar {
 
 /// What finish() takes for granted. One pass over the triangles, in parallel; of all else sizes and indices alone.
 void check_parts(const Scene& scene);
+/// Of a camera alone.
+void check_camera(const Camera& camera);
 
 }  // namespace ajar

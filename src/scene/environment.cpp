@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "ajar/core/angle.h"
 #include "ajar/core/error.h"
 #include "ajar/core/parallel.h"
 #include "ajar/core/warp.h"
@@ -35,7 +36,7 @@ float folded(const Environment& e, int y) { return e.polar && (y == 0 || y == e.
 
 Vec2 texels_of(const Environment& e, const Vec3& w) {
   const Rows rows = rows_of(e);
-  const float phi = std::atan2(w.x, -w.z), theta = std::atan2(std::sqrt(w.x * w.x + w.z * w.z), w.y);
+  const float phi = fast_atan2(w.x, -w.z), theta = fast_atan2(std::sqrt(w.x * w.x + w.z * w.z), w.y);
   const float u = phi * (inv_pi / 2);
   return {(u < 0 ? u + 1 : u) * float(e.table.width), rows.top + theta * inv_pi * rows.steps};
 }

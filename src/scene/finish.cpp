@@ -92,8 +92,16 @@ void set_areas(Mesh& mesh) {
   mesh.total_area = mesh.area.sum;
 }
 
+// What is the other way round of to_world, so that parts may be moved by that alone. Checked afterwards.
+void set_inverses(Scene& scene) {
+  for (Shape& s : scene.shapes) s.to_object = is_mesh(s) ? Mat4(1) : inverse(s.to_world);
+  for (Instance& i : scene.instances) i.to_object = inverse(i.to_world);
+  scene.camera.to_camera = inverse(scene.camera.to_world);
+}
+
 void prepare_light(Scene& scene, uint32_t id) {
   Light& light = scene.lights[id];
+  if (std::abs(length2(light.direction) - 1) > 1e-5f) light.direction = glm::normalize(light.direction);
   light.textured = light.radiance.texture != none;
   light.rectangle = {};
   if (light.kind == LightKind::area && is_mesh(scene.shapes[light.shape])) {
@@ -114,6 +122,7 @@ void prepare_light(Scene& scene, uint32_t id) {
 
 void finish(Scene& scene) {
   scene.finished = false;
+  set_inverses(scene);
   check_parts(scene);
   set_bounds(scene);
   for (Mesh& mesh : scene.meshes) set_packed(mesh);
@@ -124,7 +133,7 @@ void finish(Scene& scene) {
   }
   scene.infinite_lights.clear();
   for (uint32_t i = 0; i < scene.lights.size(); ++i) prepare_light(scene, i);
-  set_light_choice(scene, scene.light_tree.choice);
+  scene.light_tree = make_light_tree(scene, scene.light_tree.choice);
   scene.finished = true;
 }
 
@@ -135,9 +144,13 @@ void require_finished(const Scene& scene) {
   if (!scene.finished || scene.light_tree.tiling.size() != scene.lights.size() ||
       !std::all_of(scene.meshes.begin(), scene.meshes.end(), is_packed))
     throw Error("scene: it was built or changed, and not finished; call finish(scene) first");
+  check_camera(scene.camera);
 }
 
-void set_light_choice(Scene& scene, LightChoice choice) { scene.light_tree = make_light_tree(scene, choice); }
+void set_light_choice(Scene& scene, LightChoice choice) {
+  scene.light_tree.choice = choice;
+  if (scene.finished) scene.light_tree = make_light_tree(scene, choice);
+}
 
 uint64_t count_triangles(const Scene& scene) {
   uint64_t n = 0;

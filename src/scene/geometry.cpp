@@ -1,5 +1,6 @@
 #include "ajar/scene/geometry.h"
 
+#include "ajar/core/angle.h"
 #include "ajar/core/warp.h"
 
 namespace ajar {
@@ -213,7 +214,7 @@ UnitPoint sample_unit(ShapeKind kind, const Vec2& u, Vec2& uv) {
   }
   if (kind == ShapeKind::disk) {
     const Vec2 d = to_disk(u);
-    const float turn = std::atan2(d.y, d.x) / (2 * pi);
+    const float turn = fast_atan2(d.y, d.x) / (2 * pi);
     uv = {std::sqrt(glm::dot(d, d)), turn < 0 ? turn + 1 : turn};
     return {glm::dvec3(d, 0), {0, 0, 1}, Vec3(0), Vec3(0)};
   }
@@ -319,8 +320,8 @@ double area(const Scene& scene, uint32_t id) {
 
 Vec2 sphere_uv(const Shape& sphere, const Vec3& p) {
   const Vec3 q = map_point(sphere.to_object, p);
-  const float turn = std::atan2(q.y, q.x) / (2 * pi);
-  return {turn < 0 ? turn + 1 : turn, std::atan2(std::sqrt(q.x * q.x + q.y * q.y), q.z) * inv_pi};
+  const float turn = fast_atan2(q.y, q.x) / (2 * pi);
+  return {turn < 0 ? turn + 1 : turn, fast_atan2(std::sqrt(q.x * q.x + q.y * q.y), q.z) * inv_pi};
 }
 
 PackedTriangle pack_triangle(const Mesh& mesh, uint32_t triangle) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ajar/core/angle.h"
 #include "ajar/core/frame.h"
 #include "ajar/core/warp.h"
 #include "ajar/scene/geometry.h"
@@ -35,7 +36,7 @@ int densities_of_tiles(const Scene& scene, uint32_t id, const Vec3& w, PieceDens
   const LightTree& tree = scene.light_tree;
   const Tiling& t = tree.tilings[tree.tiling[id]];
   if (light.kind == LightKind::constant) {
-    const float turn = std::atan2(w.y, w.x) * (inv_pi / 2);
+    const float turn = fast_atan2(w.y, w.x) * (inv_pi / 2);
     const int x = std::clamp(int((turn < 0 ? turn + 1 : turn) * float(t.width)), 0, t.width - 1);
     const int y = std::clamp(int((1 - w.z) * 0.5f * float(t.height)), 0, t.height - 1);
     out[0] = {place_of(tree, id, uint32_t(y * t.width + x)), sphere_pdf * float(t.tiles.size())};

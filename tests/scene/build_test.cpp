@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <glm/gtc/matrix_transform.hpp>
 #include <set>
 
 #include "ajar/core/error.h"
@@ -71,7 +72,7 @@ TEST(Build, what_does_not_fit_is_an_error) {
   expect("material 0: its nested material is 4", [](Scene& s) { s.materials[0].nested[0] = 4; });
   expect("mesh 0: its triangle 2 has a corner", [](Scene& s) { s.meshes[0].triangles[2].y = 1000; });
   expect("mesh 0: one of its positions is not finite", [&](Scene& s) { s.meshes[0].positions[1].z = nan; });
-  expect("shape 1: its to_world is not finite", [&](Scene& s) { add_sphere(s, Vec3(nan), 1, 0); });
+  expect("shape 1: its to_world cannot be inverted", [&](Scene& s) { add_sphere(s, Vec3(nan), 1, 0); });
   expect("light 1: stands farther than 1e+18", [](Scene& s) {
     add_light(s, LightKind::point, Slot(1.0f));
     s.lights[1].position.x = 1e19f;
@@ -122,6 +123,66 @@ TEST(Build, cameras_that_cannot_be_are_errors) {
   expect("crop window that is not inside", [](Scene& s) { s.camera.crop_height = 0; });
 }
 
+TEST(Build, cameras_have_places_for_their_clip_planes) {
+  for (const float bad : {std::nanf(""), infinity})
+    expect("clip planes that are none", [=](Scene& s) { s.camera.near_clip = bad; });
+  expect("clip planes that are none", [](Scene& s) { s.camera.far_clip = std::nanf(""); });
+  expect("clip planes that are none", [](Scene& s) { s.camera.far_clip = s.camera.near_clip; });
+  expect("principal point that is not finite", [](Scene& s) { s.camera.principal.y = std::nanf(""); });
+}
+
+TEST(Build, a_finished_scene_s_camera_may_be_set_but_must_see) {
+  Scene scene = cornell(16);
+  set_camera(scene, {0, 0, 2}, {0, 0, 0}, 45, 8, 8);
+  EXPECT_NO_THROW(require_finished(scene));
+  set_camera(scene, {0, 0, 0}, {0, 0, 0}, 45, 8, 8);
+  EXPECT_THROW(require_finished(scene), Error);
+  set_orthographic(scene.camera, Mat4(1));
+  set_camera(scene, {0, 0, 2}, {0, 0, 0}, 45, 8, 8);
+  EXPECT_EQ(scene.camera.kind, CameraKind::perspective);
+}
+
+TEST(Build, what_is_moved_by_its_transform_is_moved) {
+  const Mat4 there = look_at({3, 1, 2}, {0, 0.5f, 0});
+  Scene scene = cornell(16);
+  scene.groups = 1;
+  const uint32_t disk = add_quadric(scene, ShapeKind::disk, Mat4(1), 0);
+  scene.shapes[0].group = 0;
+  add_instance(scene, 0, Mat4(1));
+  finish(scene);
+  scene.shapes[disk].to_world = scene.instances[0].to_world = scene.camera.to_world = there;
+  finish(scene);
+  for (const Mat4& m : {scene.shapes[disk].to_object, scene.instances[0].to_object, scene.camera.to_camera})
+    EXPECT_LT(max_abs(map_point(m, map_point(there, {1, 2, 3})) - Vec3(1, 2, 3)), 1e-5f);
+}
+
+TEST(Build, transforms_that_cannot_be_are_errors) {
+  const Mat4 flat = glm::scale(Mat4(1), Vec3(1, 0, 1)), uneven = glm::scale(Mat4(1), Vec3(1, 2, 1));
+  for (const Mat4& m : {flat, Mat4(0), Mat4(std::nanf(""))}) {
+    expect("cannot be inverted", [&](Scene& s) { add_quadric(s, ShapeKind::cylinder, m, 0); });
+    expect("instance 0: its to_world cannot be inverted", [&](Scene& s) { s.groups = 1, add_instance(s, 0, m); });
+  }
+  expect("stretches the sphere", [&](Scene& s) { add_quadric(s, ShapeKind::sphere, uneven, 0); });
+  EXPECT_EQ(refusal([&](Scene& s) { add_quadric(s, ShapeKind::disk, uneven, 0); }), "");
+}
+
+TEST(Build, lights_that_cannot_be_are_errors) {
+  expect("is a light and in a group", [](Scene& s) {
+    s.groups = 1;
+    s.shapes[s.lights[0].shape].group = 0;
+  });
+  expect("its cone is 0", [](Scene& s) { s.lights[add_light(s, LightKind::sun, Rgb(1))].cone = 0; });
+  EXPECT_EQ(refusal([](Scene& s) { add_light(s, LightKind::sun, Rgb(1)); }), "");
+  expect("its scale is -1", [](Scene& s) { add_envmap(s, add_image(s, 1, 1, {1, 1, 1}), -1); });
+}
+
+TEST(Build, directions_become_unit) {
+  Scene scene = under_sky(LightKind::directional);
+  scene.lights[0].direction = {0, -5, 0};
+  finish(scene);
+  EXPECT_EQ(scene.lights[0].direction, Vec3(0, -1, 0));
+}
+
 TEST(Build, doors_open_so_far) {
   EXPECT_THROW(two_rooms(121), Error);
   EXPECT_THROW(two_rooms(-1), Error);
@@ -143,6 +204,10 @@ TEST(Build, the_choice_of_lights_outlives_a_change) {
   set_light_choice(scene, LightChoice::power);
   finish(scene);
   EXPECT_EQ(scene.light_tree.choice, LightChoice::power);
+  Scene other;
+  set_light_choice(other, LightChoice::uniform);
+  finish(other);
+  EXPECT_EQ(other.light_tree.choice, LightChoice::uniform);
 }
 
 TEST(Build, parts_that_cannot_be_are_errors) {

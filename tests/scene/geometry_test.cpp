@@ -89,7 +89,7 @@ TEST(Geometry, TrianglesInterpolate) {
     Mat4 m(1);
     if (instanced) {
       m = placed(2, {-1, 2, 0.7f}, {1, 2, 3});
-      add_instance(scene, 0, m);
+      scene.instances[add_instance(scene, 0, m)].to_object = inverse(m);
     }
     const glm::dmat3 normals = glm::transpose(glm::inverse(glm::dmat3(glm::dmat4(m))));
     const glm::dvec3 e1(mesh.positions[1] - mesh.positions[0]), e2(mesh.positions[2] - mesh.positions[0]);

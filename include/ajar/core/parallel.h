@@ -23,10 +23,12 @@ namespace ajar {
 /// As many as this process may use at a time: an affinity mask counts.
 int processor_count();
 
+inline constexpr int most_threads = 4096;
+
 /// A number of threads that work together; loops that begin inside run() use these and no others.
 class Threads {
  public:
-  explicit Threads(int count);  ///< 0: processor_count()
+  explicit Threads(int count);  ///< 0: processor_count(); most_threads at most
   ~Threads();
   Threads(const Threads&) = delete;
   Threads& operator=(const Threads&) = delete;

@@ -36,6 +36,7 @@ inline bool is_finite(const Vec3& v) { return std::isfinite(v.x + v.y + v.z); }
 inline float safe_sqrt(float x) { return std::sqrt(std::max(x, 0.0f)); }
 inline Vec3 map_vector(const Mat4& m, const Vec3& v) { return Vec3(m[0]) * v.x + Vec3(m[1]) * v.y + Vec3(m[2]) * v.z; }
 inline Vec3 map_point(const Mat4& m, const Vec3& p) { return map_vector(m, p) + Vec3(m[3]); }
+inline Mat4 inverse(const Mat4& m) { return Mat4(glm::inverse(glm::dmat4(m))); }
 
 /// Relative luminance of linear Rec. 709 RGB (ITU-R BT.709).
 inline float luminance(const Rgb& c) { return 0.212671f * c.x + 0.715160f * c.y + 0.072169f * c.z; }

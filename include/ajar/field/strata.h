@@ -7,6 +7,7 @@
 #include <bit>
 #include <vector>
 
+#include "ajar/core/angle.h"
 #include "ajar/core/vec.h"
 
 namespace ajar {
@@ -75,7 +76,7 @@ struct Patch {
   int zone = no_zones, segment = no_segments;
 };
 inline Patch patch_of(const Vec3& local) {
-  const float turn = std::atan2(local.y, local.x) / (2 * pi);
+  const float turn = fast_atan2(local.y, local.x) / (2 * pi);
   const int zone = int(local.z * zones), segment = int((turn < 0 ? turn + 1 : turn) * segments);
   return {no_zones + std::clamp(zone, 0, zones - 1), no_segments + std::clamp(segment, 0, segments - 1)};
 }

@@ -38,22 +38,24 @@ uint32_t add_box(Scene& scene, const Vec3& low, const Vec3& high, uint32_t mater
 uint32_t add_sphere(Scene& scene, const Vec3& center, float radius, uint32_t material);
 /// A sphere of triangles with smooth normals.
 uint32_t add_globe(Scene& scene, const Vec3& center, float radius, uint32_t material, int rings = 24);
+/// A sphere, disk or cylinder as Shape has it under a transform, which leaves a sphere round.
 uint32_t add_quadric(Scene& scene, ShapeKind kind, const Mat4& to_world, uint32_t material);
 /// Shows the shapes of a group, of which there are Scene::groups, under a transform.
 uint32_t add_instance(Scene& scene, uint32_t group, const Mat4& to_world);
 
 /// Makes a shape an area light [W/(m^2 sr)]; returns the light. Throws Error where there is no such shape.
 uint32_t add_area_light(Scene& scene, uint32_t shape, const Slot& radiance);
-/// A light without a shape, at the origin or along -y. constant: radiance; directional: irradiance; point, spot,
-/// projector: intensity (the spot with a cutoff of 40 and a beam of 30 degrees). For an envmap take add_envmap.
+/// A light without a shape, at the origin or along -y. constant, sun (0.5358 degrees across): radiance; directional:
+/// irradiance; point, spot, projector: intensity (the spot with a cutoff of 40 and a beam of 30 degrees). For an envmap
+/// take add_envmap.
 uint32_t add_light(Scene& scene, LightKind kind, const Slot& radiance);
 /// An envmap from an image slot made by add_image; throws Error for another.
 uint32_t add_envmap(Scene& scene, const Slot& image, float scale = 1);
 
 /// Camera space (x left, y up, z forward) at eye, looking at target.
 Mat4 look_at(const Vec3& eye, const Vec3& target);
-/// Perspective camera with a horizontal field of view between 0 and 180 degrees, eye apart from target; sets the film's
-/// size, too, without a crop window.
+/// Perspective camera (set_perspective) with a horizontal field of view between 0 and 180 degrees, eye apart from
+/// target; sets the film's size, too, without a crop window.
 void set_camera(Scene& scene, const Vec3& eye, const Vec3& target, float fov, int width, int height);
 
 // Scenes: finished, box filter, size x size pixels unless they say otherwise. Change one and call finish() again.

@@ -61,7 +61,8 @@ bool connect(const Camera& camera, const Vec3& x, const Vec2& lens, float margin
 float raster_factor(const Camera& camera, const Vec3& o, const Vec3& x);
 /// Sets plane, to_world and to_camera from a field of view in degrees along x, between 0 and 180 (see docs/scenes.md
 /// for the other axes), and the film's width and height, which must be set before. to_world may be any invertible
-/// affine map. finish refuses what is neither.
+/// affine map. finish refuses what is neither. An orthographic camera becomes a perspective one; a lens, clip planes
+/// and the principal point stay.
 void set_perspective(Camera& camera, float fov_x_degrees, const Mat4& to_world);
 /// The same for an orthographic camera: the image is 2 wide in camera space, so to_world's scale gives its size.
 void set_orthographic(Camera& camera, const Mat4& to_world);

@@ -70,14 +70,14 @@ struct Shape {
   uint32_t light = none;
   uint32_t group = none;  ///< belongs to a shapegroup: seen only through instances
   Mat4 to_world{1};
-  Mat4 to_object{1};
-  std::string name;  ///< for messages
+  Mat4 to_object{1};  ///< its inverse, made by finish
+  std::string name;   ///< for messages
 };
 
 struct Instance {
   uint32_t group = 0;
   Mat4 to_world{1};
-  Mat4 to_object{1};
+  Mat4 to_object{1};  ///< its inverse, made by finish
 };
 
 /// What the file says about rendering; the command line overrules it.
@@ -110,25 +110,26 @@ struct Scene {
   std::vector<uint32_t> infinite_lights;  ///< constant, envmap and sun: those an escaping ray finds
   Vec3 center{0};                         ///< bounding sphere of everything that can be hit
   float radius = 1;
-  bool finished = false;  ///< the parts of build.h clear it
+  bool finished = false;  ///< what adds parts (build.h) clears it
 };
 
 /// What may be hit, seen from or lit from is at most so many units away: beyond, the ray tracer's squares of distances
 /// are no numbers.
 inline constexpr float farthest = 1e18f;
 
-/// Computes what is derived (areas, bounds, light choice); call once after building or changing a scene. Throws Error
-/// where parts do not fit (an index that leads nowhere, lists of a mesh or image of other lengths than they say, an
-/// area light and a shape that do not name each other), where a colour of a material or light, or a light's
-/// sampling_weight, is not finite or negative, where something reaches or stands beyond `farthest`, where the
-/// transform of an environment, spot or projector cannot be inverted, for a camera without a view, a lens or a place
-/// for its crop window, and for bsdfs that cannot be (one that is part of itself, an index of refraction below 0).
+/// Computes what is derived (inverses, areas, bounds, light choice; directions become unit); call once after building
+/// or changing a scene. Throws Error where parts do not fit (an index that leads nowhere, lists of a mesh or image of
+/// other lengths than they say, an area light and a shape that do not name each other), where a colour of a material or
+/// light, or a light's sampling_weight, is not finite or negative, where something reaches or stands beyond `farthest`,
+/// where the transform of an environment, spot or projector cannot be inverted, for a camera without a view, a lens or
+/// a place for its crop window, for a lamp in a group, a sphere that is not round, a sun without extent, and for bsdfs
+/// that cannot be (one that is part of itself, an index of refraction below 0).
 void finish(Scene& scene);
 /// Throws Error unless finish was called since the scene was built or added to. Changes that leave all numbers of parts
-/// as they are go unnoticed.
+/// as they are go unnoticed, but a camera that has no view.
 void require_finished(const Scene& scene);
-/// Has next-event estimation choose another way, also after the scene is finished anew; of a finished scene. learned is
-/// tree, for fields to do better.
+/// Has next-event estimation choose another way, also after the scene is finished (anew). learned is tree, for fields
+/// to do better.
 void set_light_choice(Scene& scene, LightChoice choice);
 /// Triangles of all meshes, each once however often it is placed.
 uint64_t count_triangles(const Scene& scene);

@@ -45,7 +45,6 @@ DMat4 shape_to_world(Params& p, bool flat) {
 void place_quadric(Params& p, Shape& shape, const DMat4& m) {
   check_invertible(p.loader, p.node, m);
   shape.to_world = Mat4(m);
-  shape.to_object = Mat4(glm::inverse(m));
 }
 
 void turn(Mesh& mesh) {
@@ -323,7 +322,6 @@ void load_instance(Loader& loader, const Node& node, uint32_t group) {
   const DMat4 m = shape_to_world(p, false);
   instance.group = load_shape_group(loader, *groups.front());
   instance.to_world = Mat4(m);
-  instance.to_object = Mat4(glm::inverse(m));
   loader.scene.instances.push_back(instance);
   note_strays(p, "bsdf", "an instance shows its shapegroup as it is: not used; give it to the shapes of the group");
   note_strays(p, "emitter", "an instance shows its shapegroup as it is: not used; a light stands beside the group");
