@@ -21,14 +21,16 @@ const LightCut* cut_of(const Fields* fields) {
   return fields && !fields->starts.cuts.empty() ? &fields->starts.cuts[0] : nullptr;
 }
 
-// Probability with which light subpaths start at a piece.   (V5)
+// Probability with which light subpaths start at a piece.   (V5) Never nothing, which no other density could be held
+// against: beside a lamp 10^16 times as bright the share of a faint one is lost in the sum.
 double start_pdf(const LightTree& tree, const Fields* fields, uint32_t place) {
-  const double power = power_of(tree, place, place + 1);
+  const double power = std::max(power_of(tree, place, place + 1), 1e-30 * tree.power_before.back());
   const LightCut* cut = cut_of(fields);
   if (!cut) return power / tree.power_before.back();
   const uint32_t entry = entry_of(fields->starts, *cut, place);
   const double of_entry = power_of(tree, fields->starts.entries[entry].first, end_of(tree, fields->starts, entry));
-  return of_entry > 0 ? power / of_entry * double(share_of(fields->starts, *cut, entry)) : 0;
+  return std::min(power / std::max(of_entry, power), 1.0) *
+         std::max(double(share_of(fields->starts, *cut, entry)), 1e-30);
 }
 
 // Of a light of the sky.

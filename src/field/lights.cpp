@@ -17,13 +17,20 @@ struct CutNode {
   uint32_t node = 0;
   LightEvidence e;
   float weight = 1;
-  double share = 0;  // of the cut, by its weight
+  double share = 0;    // of the cut, by its weight
+  double promise = 0;  // share of what the tree promises
 };
 
+// Share of `all` that is taken for what is not known, at least: joins choose among light vertices by their flux, and of
+// a lamp 10^16 times fainter than another choose none, however many subpaths start there.
+constexpr double least_unknown = 1e-8;
+
 // Shares that make the least noise go with the root of the second moment. What is not known of an entry is taken from
-// all of them.   (V2)
-double strength(const LightEvidence& e, double all) {
-  return std::sqrt((double(e.square) + all) / (double(e.tried) + 1));
+// all of them: what they brought over their promise, but no more than all of them together bring. (A sun that no ray of
+// a closed room has found promises ten thousand times what the room's lamp does.)   (V2)
+double strength(const CutNode& w, double all, double brought) {
+  const double unknown = all * std::clamp(sqr(brought / std::max(w.promise, 1e-30)) / all, least_unknown, 1.0);
+  return std::sqrt((double(w.e.square) + unknown) / (double(w.e.tried) + 1));
 }
 
 struct Sum {
@@ -48,11 +55,12 @@ void weigh(const LightRules& rules, std::vector<CutNode>& cut) {
   const Sum sum = sum_of(cut);
   if (!(sum.hits > 0)) return;
   const double all = sum.square / sum.tried;
-  double mean = 0;
-  for (const CutNode& w : cut) mean += w.share * strength(w.e, all);
+  double brought = 0, mean = 0;
+  for (const CutNode& w : cut) brought += w.promise * std::sqrt(double(w.e.square) / std::max(double(w.e.tried), 1.0));
+  for (const CutNode& w : cut) mean += w.promise * strength(w, all, brought);
   const double mix = double(rules.mix) * sum.hits / (sum.hits + 8);
   for (CutNode& w : cut) {
-    const float weight = float(mix * strength(w.e, all) / std::max(mean, 1e-30) + (1 - mix));  // (V3)
+    const float weight = float(mix * strength(w, all, brought) / std::max(mean, 1e-30) + (1 - mix));  // (V3)
     w.share *= double(weight / w.weight);
     w.weight = weight;
   }
@@ -136,6 +144,16 @@ void append(std::vector<CutNode>& cut, const LightTree& tree, const LightRules& 
     to.evidence.push_back(cut[i].e);
   }
   to.cuts.push_back(c);
+}
+
+// What the tree promises a cell of each entry; null: by power.
+void set_promises(const LightTree& tree, const Receiver* cell, std::vector<CutNode>& cut) {
+  double all = 0;
+  for (CutNode& w : cut) {
+    const LightNode& n = tree.nodes[w.node];
+    all += w.promise = cell ? double(importance(tree, w.node, *cell)) : power_of(tree, n.first, n.last);
+  }
+  for (CutNode& w : cut) w.promise = all > 0 ? w.promise / all : 1 / double(cut.size());
 }
 
 // A cut's entries with the evidence of the records. Shares are how often entries were chosen, where that was seen;
@@ -225,10 +243,12 @@ LearnedLights learn_lights(const LightTree& tree, const LearnedLights& v, const 
     if (const uint32_t left = tree.nodes[i].left; left != 0) parents[left] = parents[left + 1] = i;
   std::vector<CutNode> cut, divided;
   for (size_t i = 0; i < v.cuts.size(); ++i) {
-    const Receiver* cell = tree.sky.empty() || cells.empty() ? nullptr : &cells[i];
-    take(tree, v, tallies, v.cuts[i], rules, v.cuts[i].plain ? cell : nullptr, cut);
+    const Receiver* cell = cells.empty() ? nullptr : &cells[i];
+    const bool under_sky = cell && !tree.sky.empty();
+    take(tree, v, tallies, v.cuts[i], rules, under_sky && v.cuts[i].plain ? cell : nullptr, cut);
+    set_promises(tree, cell, cut);
     weigh(rules, cut);
-    const bool plain = cell && is_plain(tree, *cell, cut);
+    const bool plain = under_sky && is_plain(tree, *cell, cut);
     unite(tree, parents, 0.2 * double(rules.divide), cut);
     size_t room = cut.size() < rules.most ? rules.most - cut.size() : 0;
     divided.clear();

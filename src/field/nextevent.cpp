@@ -40,6 +40,9 @@ const LightChances& know(const LightTree& tree, const Guide& guide, LightChances
     c.of[i] = std::min(most_importance, e.weight * importance(tree, e.node, c.at));
     c.total += c.of[i];
   }
+  const float least = least_share * c.total / float(c.cut->count);
+  c.total = 0;
+  for (uint32_t i = 0; i < c.cut->count; ++i) c.total += c.of[i] = c.of[i] > 0 ? std::max(c.of[i], least) : 0;
   return c;
 }
 
@@ -183,7 +186,7 @@ void record_next_event(const Scene& scene, const Guide& guide, LightChances& cha
     const LightChances& c = know(tree, guide, chances);
     const uint32_t node = v.entries[entry].node;
     const float promise = importance(tree, node, c.at);
-    float over = is_cut(c) ? v.entries[entry].weight / c.total : 1 / promise;  // its chance over what it promises
+    float over = (is_cut(c) ? c.of[entry - cut->first] / c.total : 1) / promise;  // its chance over what it promises
     if (plain) over = sky_share(tree, c.at, node) / promise;
     brought = promise > 0 ? pi * arrives * c.asks * over : 0;  // (V1)
   }

@@ -82,15 +82,23 @@ LightEnd light_end(std::span<const Vertex> light, double nee_ratio) {
   return {&light.back(), int(light.size()), before.delta, before.own, nee_ratio};
 }
 
-bool join_vertices(const LightEnd& light, std::span<const Vertex> camera, Candidate& out) {
-  const Vertex& a = *light.vertex;
-  const Vertex& c = camera.back();
+bool look_between(const Vertex& a, const Vertex& c, Between& out) {
   const Vec3 between = c.p - a.p;
   if (!may_scatter(c.guide, -between) || !may_scatter(a.guide, between)) return false;
-  const float d2 = length2(between);
-  if (!(d2 > 0)) return false;
-  const float distance = std::sqrt(d2);
-  const Vec3 w = between / distance;
+  out.distance2 = length2(between);
+  if (!(out.distance2 > 0)) return false;
+  const float distance = std::sqrt(out.distance2);
+  out.w = between / distance;
+  const Vec3 from = offset(c.p, c.ng, c.error, -out.w);
+  out.segment = {from, shadow_end(a.p, a.ng, a.error, out.w, distance) - from};
+  return true;
+}
+
+bool join_vertices(const LightEnd& light, std::span<const Vertex> camera, const Between& between, Candidate& out) {
+  const Vertex& a = *light.vertex;
+  const Vertex& c = camera.back();
+  const Vec3 w = between.w;
+  const float d2 = between.distance2;
   const GuideEval ec = evaluate_bsdf(c.guide, -w, Mode::radiance);
   if (is_black(ec.f_cos)) return false;
   const GuideEval ea = evaluate_bsdf(a.guide, w, Mode::importance);
@@ -101,8 +109,6 @@ bool join_vertices(const LightEnd& light, std::span<const Vertex> camera, Candid
   out.camera = end_at(camera, 0, ec.pdf_reverse);
   out.camera_found = {&a.guide, w, ea.pdf, std::abs(glm::dot(c.ng, w)), d2};
   out.nee = {light.nee_ratio, 1};
-  const Vec3 from = offset(c.p, c.ng, c.error, -w);
-  out.segment = {from, shadow_end(a.p, a.ng, a.error, w, distance) - from};
   return true;
 }
 

@@ -4,14 +4,15 @@
 namespace ajar {
 namespace {
 
-template <bool glossy, bool glossy_light>
-void expect(const LightStore::Block& b, const Seer& seer, int most, Values& out) {
+// Of `count` entries from one on.
+template <bool glossy, bool glossy_light, uint32_t from = 0, uint32_t count = LightStore::width>
+void expect_part(const LightStore::Block& b, const Seer& seer, int most, Values& out) {
   const Guide& guide = seer.vertex->guide;
   const Vec3 p = seer.vertex->p, n = guide.frame.n, wo = guide.wo;
   const float behind = guide.bsdf.opaque ? 0.0f : -1.0f, n_o = guide.wo_local.z, near = seer.near,
               lights = seer.near_lights;
   const Gloss g = seer.gloss;
-  for (uint32_t i = 0; i < LightStore::width; ++i) {
+  for (uint32_t i = from; i < from + count; ++i) {
     const float x = p.x - b.x[i], y = p.y - b.y[i], z = p.z - b.z[i];
     const float d2 = std::max(x * x + y * y + z * z, 1e-30f);
     const float cos_a = b.nx[i] * x + b.ny[i] * y + b.nz[i] * z, cos_c = -(n.x * x + n.y * y + n.z * z);
@@ -33,18 +34,22 @@ void expect(const LightStore::Block& b, const Seer& seer, int most, Values& out)
   }
 }
 
+template <bool glossy>
+void expect_all_parts(const LightStore::Block& b, const Seer& seer, int most, Values& out) {
+  constexpr uint32_t half = LightStore::width / 2;
+  if (b.glossy > half) return expect_part<glossy, true>(b, seer, most, out);
+  if (b.glossy == 0) return expect_part<glossy, false>(b, seer, most, out);
+  expect_part<glossy, true, 0, half>(b, seer, most, out);
+  expect_part<glossy, false, half, half>(b, seer, most, out);
+}
+
 }  // namespace
 
 void expect(const LightStore::Block& b, const Seer& seer, int most, Values& out) {
-  const bool glossy = seer.gloss.peak > 0;
-  if (glossy && b.glossy)
-    expect<true, true>(b, seer, most, out);
-  else if (glossy)
-    expect<true, false>(b, seer, most, out);
-  else if (b.glossy)
-    expect<false, true>(b, seer, most, out);
+  if (seer.gloss.peak > 0)
+    expect_all_parts<true>(b, seer, most, out);
   else
-    expect<false, false>(b, seer, most, out);
+    expect_all_parts<false>(b, seer, most, out);
 }
 
 void apply_chances(const LightStore::Block& b, const Views& views, uint32_t region, Values& values) {

@@ -29,7 +29,8 @@ bool sees_first(const End& light, const End& camera) {
 
 // What s = 0 or s = 1, at hand, has of what they have both: by densities, where each ray to a light counts. (J11)
 double share_of_pair(double hit, double nee, double rays, bool hits) {
-  return (hits ? hit : rays * nee) / (hit + rays * nee) * (hit + nee);
+  const double both = hit + rays * nee;
+  return both > 0 ? (hits ? hit : rays * nee) / both * (hit + nee) : 0;
 }
 
 }  // namespace

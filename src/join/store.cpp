@@ -17,6 +17,8 @@ float flux_of(const Vertex& v) {
   return luminance(v.beta) * inv_pi * std::max(luminance(albedo(v.guide.bsdf, v.guide.wo_local)), 0.02f);
 }
 
+bool is_glossy(const Vertex& v) { return gloss_of(v.guide.bsdf, v.guide.wo_local).peak > 0; }
+
 void put(LightStore::Block& b, uint32_t i, const Vertex& v, const LightStore::Entry& at, float near) {
   const Vec3 n = v.guide.frame.n;
   b.x[i] = v.p.x, b.y[i] = v.p.y, b.z[i] = v.p.z;
@@ -27,7 +29,7 @@ void put(LightStore::Block& b, uint32_t i, const Vertex& v, const LightStore::En
   b.region[i] = at.region, b.path[i] = at.path, b.s[i] = at.s;
   const Vec3 w = v.guide.wo;
   const Gloss gloss = gloss_of(v.guide.bsdf, v.guide.wo_local);
-  b.glossy |= gloss.peak > 0;
+  if (gloss.peak > 0) b.glossy = i + 1;
   b.wx[i] = w.x, b.wy[i] = w.y, b.wz[i] = w.z;
   b.matt[i] = gloss.matt, b.peak[i] = gloss.peak, b.f0[i] = gloss.f0, b.alpha[i] = gloss.alpha;
 }
@@ -90,9 +92,16 @@ void clear_blocks(LightStore& store) {
 void deal_blocks(LightStore& store) {
   clear_blocks(store);
   const size_t n = store.blocks.size();
-  for (size_t i = 0; i < store.entries.size(); ++i) {
-    const Vertex& v = store.vertex(store.entries[i]);
-    put(store.blocks[i % n], uint32_t(i / n), v, store.entries[i], float(near_of(v)));
+  std::vector<LightStore::Entry> dealt;
+  for (size_t block = 0; block < n; ++block) {
+    dealt.clear();
+    for (size_t i = block; i < store.entries.size(); i += n) dealt.push_back(store.entries[i]);
+    std::stable_partition(dealt.begin(), dealt.end(), [&](const auto& e) { return is_glossy(store.vertex(e)); });
+    for (size_t i = 0; i < dealt.size(); ++i) {
+      const Vertex& v = store.vertex(dealt[i]);
+      store.entries[i * n + block] = dealt[i];
+      put(store.blocks[block], uint32_t(i), v, dealt[i], float(near_of(v)));
+    }
   }
 }
 
@@ -156,12 +165,14 @@ float joins_for(const Joiner& joiner, float brings) {
 
 // Of so many blocks from one on, and around.
 void expect_some(const LightStore& store, const Joiner& joiner, uint32_t from, uint32_t count, Expectation& out) {
-  resize(out, count);
+  if (out.values.size() < count) resize(out, count);
+  out.sum = 0;
   const Seer seer = seer_of(joiner);
   const Guide& guide = joiner.vertex->guide;
   const uint32_t region = region_of(guide);
+  const uint32_t n = uint32_t(store.blocks.size());
   for (uint32_t j = 0; j < count; ++j) {
-    const LightStore::Block& b = store.blocks[(from + j) % store.blocks.size()];
+    const LightStore::Block& b = store.blocks[from + j < n ? from + j : from + j - n];
     expect(b, seer, joiner.most, out.values[j]);
     if (guide.fields) apply_chances(b, guide.fields->views, region, out.values[j]);
     add_up(out, j);

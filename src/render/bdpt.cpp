@@ -60,10 +60,13 @@ float worth_of(Work& work, const Vertex& v) {
   return work.pixel > 0 ? luminance(v.beta) * scatters(v.guide) / work.pixel : 0;
 }
 
+// Of such a light all rays would be one.
+bool is_one_point(const Scene& scene) { return scene.lights.size() == 1 && has_no_extent(scene.lights[0].kind); }
+
 // Rays to lights: the more, the more of the pixel's light is expected of them. Behind the first vertex that the lens
 // sees they all hang on the one walk that came there.
 uint8_t next_events(const Work& work, const Vertex& v, float worth) {
-  if (!(worth > 0) || v.guide.cell == none) return 1;
+  if (!(worth > 0) || v.guide.cell == none || is_one_point(*work.job.scene)) return 1;
   const float brings = worth * work.job.walk.fields->q.cells[v.guide.cell].direct;
   const float most = v.seen ? seen_next_events : inner_next_events;
   return brings > 0 ? uint8_t(std::clamp(most * std::sqrt(brings), 1.0f, 16.0f)) : uint8_t(1);  // (J4)
@@ -124,6 +127,15 @@ void ask_for(const LightStore& store, const std::vector<StoreChoice>& choices) {
   }
 }
 
+// The camera subpath's last vertex and a light vertex that it sees.
+void add_join(Work& work, const LightEnd& light, const Between& between, float counts) {
+  const Subpath& camera = work.scratch.camera;
+  Candidate c;
+  if (!join_vertices(light, camera.first(camera.n), between, c)) return;
+  c.value *= counts;
+  add(work, c, light.s, camera.n);
+}
+
 // s >= 2: some of the light vertices of many chunks.
 void join_stored(Work& work, float worth) {
   const Job& job = work.job;
@@ -135,10 +147,10 @@ void join_stored(Work& work, float worth) {
   ask_for(store, choices);
   for (const StoreChoice& choice : choices) {
     const LightStore::Entry& at = *choice.entry;
-    Candidate c;
-    if (join_vertices(store.end(at), camera.first(camera.n), c)) {
-      c.value *= choice.weight;
-      const bool seen = add_if_visible(work, c, at.s, camera.n);
+    Between between;
+    if (look_between(store.vertex(at), v, between)) {
+      const bool seen = is_unblocked(job, between.segment, at.s, camera.n, work.scratch);
+      if (seen) add_join(work, store.end(at), between, choice.weight);
       if (work.sample.teaches)
         record_join(job.walk.fields->views, job.training->views, region_of(v.guide), at.region, seen);
     }
@@ -192,10 +204,11 @@ void join_all(Work& work) {
   if (job.photons) join_merged(job, work.sample, work.scratch);
   if (work.scratch.pool) return join_stored(work, worth);
   const int most = std::min(light.n, job.walk.max_edges + 1 - t);
-  Candidate c;
   for (int s = 2; s <= most; ++s)
     if (connectable(light[s - 1].guide)) {
-      if (join_vertices(light_end(light.first(s), work.nee_ratio), camera.first(t), c)) add_if_visible(work, c, s, t);
+      if (Between between;
+          look_between(light[s - 1], camera[t - 1], between) && is_unblocked(job, between.segment, s, t, work.scratch))
+        add_join(work, light_end(light.first(s), work.nee_ratio), between, 1);
       charge_join(work.scratch, s, t);
     }
 }

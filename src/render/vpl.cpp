@@ -129,10 +129,12 @@ void join_vpls(Work& work) {
   choose_some(store, scratch.expected, joins, key, scratch.choices);
   for (const StoreChoice& choice : scratch.choices) {
     const LightStore::Entry& at = *choice.entry;
-    Candidate c;
-    const bool seen = join_vertices(store.end(at), camera.first(camera.n), c) && is_free(work, c, at.s, camera.n);
+    Between between;
+    const bool seen =
+        look_between(store.vertex(at), x, between) && is_unblocked(job, between.segment, at.s, camera.n, scratch);
     if (visibility) learn(*visibility, uint32_t(&at - store.entries.data()), seen);
-    if (seen) {
+    if (Candidate c; seen && join_vertices(store.end(at), camera.first(camera.n), between, c)) {
+      complete(c);
       const double share = share_at(job, at, camera[camera.n - 1].p, c.light.other);
       c.value *= choice.weight;
       add(work, c, float(share) * share_of_camera(work, c), at.s, camera.n);

@@ -221,11 +221,15 @@ float weigh_sky(const LightTree& t, const Receiver& at, float out[most_sky]) {
   return sum;
 }
 
+// What a child gets at least that promises anything: promises know nothing of walls.
+constexpr float least_child = 0.01f;
+
 // Probability of the left child; negative where neither can be.
 float left_share(const LightTree& tree, const LightNode& n, const Receiver& at) {
   const float x = importance(tree, n.left, at), y = importance(tree, n.left + 1, at);
   const float sum = x + y;
-  return sum > 0 ? x / sum : -1;
+  if (!(sum > 0)) return -1;
+  return x > 0 && y > 0 ? std::clamp(x / sum, least_child, 1 - least_child) : x / sum;
 }
 
 // Tiles of one light below a node are chosen by power: they are alike to a receiver, and the walk would take longer

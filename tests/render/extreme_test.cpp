@@ -143,6 +143,45 @@ TEST(Extreme, LightsWithoutAreaGiveNothing) {
   }
 }
 
+// A closed room with a small lamp, and the camera in it.
+Scene closed_room(const Vec3& middle, float watts) {
+  Scene scene;
+  add_box(scene, middle - 1.0f, middle + 1.0f, add_diffuse(scene, Rgb(0.5f)), true);
+  scene.lights[add_light(scene, LightKind::point, Rgb(watts))].position = middle + Vec3(0.1f, 0.6f, 0);
+  scene.filter = make_filter(FilterKind::box, 0.5f);
+  set_camera(scene, middle + Vec3(0, 0, 0.9f), middle, 70, 16, 16);
+  return scene;
+}
+
+// A sun that no ray in the room finds promises ten thousand times what its lamp does.
+TEST(Extreme, SunsOutsideDoNotDrawRaysFromTheLampInside) {
+  Scene dark = closed_room(Vec3(0), 0.4f), sunny = closed_room(Vec3(0), 0.4f);
+  sunny.lights[add_light(sunny, LightKind::directional, Rgb(1000))].direction = {0.4f, -1, -0.3f};
+  for (Scene* s : {&dark, &sunny}) set_camera(*s, {0, 0, 0.9f}, Vec3(0), 70, 40, 40), finish(*s);
+  const Picture right = image_of(dark, "path", 1024);
+  const auto error_of = [&](const Scene& scene) {
+    RenderOptions o = statistical("guided-bdpt");
+    o.spp = 96, o.leaves_out = false;
+    const Picture image = develop(rendered(scene, Accel(scene), o).film);
+    double sum = 0;
+    for (size_t i = 0; i < right.pixels.size(); ++i) sum += sqr(double(image.pixels[i] / right.pixels[i]) - 1);
+    return sum / double(right.pixels.size());
+  };
+  EXPECT_LT(error_of(sunny), 0.008);  // without the sun 0.0008, most of it the reference's own
+}
+
+// Its share of all light is lost in the sum; its room is lit all the same.
+TEST(Extreme, FaintLampsOutlastBrightOnes) {
+  Scene scene = closed_room({5, 0, 0}, 1e-9f);
+  add_box(scene, {-6, -1, -1}, {-4, 1, 1}, 0, true);
+  scene.lights[add_light(scene, LightKind::point, Rgb(1e9f))].position = {-5, 0, 0};
+  finish(scene);
+  const double expected = sum_of(image_of(scene, "path", 256));
+  EXPECT_GT(expected, 0);
+  for (const char* integrator : {"bdpt", "vcm", "guided-path", "guided-bdpt"})
+    EXPECT_NEAR(sum_of(image_of(scene, integrator, 256)) / expected, 1, 0.1) << integrator;
+}
+
 // What next-event estimation is not to ask for shines all the same, for all who send light from it.
 TEST(Extreme, LampsThatAreNotAskedForShine) {
   Scene scene = stage(12);

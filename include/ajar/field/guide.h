@@ -56,7 +56,7 @@ inline bool connectable(const Guide& guide) {
 }
 /// False where evaluate towards w, of any length, is sure to be black; quick.
 inline bool may_scatter(const Guide& guide, const Vec3& w) {
-  return !guide.bsdf.opaque || glm::dot(guide.frame.n, w) > 0;
+  return !guide.bsdf.opaque || (glm::dot(guide.frame.n, w) > 0 && (!guide.bent || glm::dot(guide.ng, w) > 0));
 }
 /// The region that the vertex is in (views.h), no_region if unknown.
 inline uint32_t region_of(const Guide& guide) {

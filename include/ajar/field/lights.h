@@ -44,6 +44,8 @@ struct LightTallies {
   std::vector<int64_t> square, hits, tried;
 };
 
+/// What is shared out evenly among all entries of a cut that may be chosen, whatever was promised and learned.
+inline constexpr float least_share = 0.05f;
 /// Entries of the cut by which light subpaths start.
 inline constexpr uint32_t most_starts = 512;
 

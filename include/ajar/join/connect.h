@@ -59,8 +59,22 @@ struct LightEnd {
 };
 /// Of a subpath of two vertices or more.
 LightEnd light_end(std::span<const Vertex> light, double nee_ratio);
-/// s >= 2, t >= 2: the last vertices of both.
-bool join_vertices(const LightEnd& light, std::span<const Vertex> camera, Candidate& out);
+/// What lies between the last vertices of a light and a camera subpath.
+struct Between {
+  Vec3 w{0};  ///< from the light's to the camera's, unit
+  float distance2 = 0;
+  Segment segment;  ///< that must be free
+};
+/// False where one of them is sure to scatter nothing to the other. Quick: half of all joins are blocked, and need no
+/// more.
+bool look_between(const Vertex& light, const Vertex& camera, Between& out);
+/// s >= 2, t >= 2: the last vertices of both, and what lies between. False where nothing is scattered.
+bool join_vertices(const LightEnd& light, std::span<const Vertex> camera, const Between& between, Candidate& out);
+/// All of it, visibility aside.
+inline bool join_vertices(const LightEnd& light, std::span<const Vertex> camera, Candidate& out) {
+  Between between;
+  return look_between(*light.vertex, camera.back(), between) && join_vertices(light, camera, between, out);
+}
 /// t = 1: the light subpath's vertex s - 1 >= 0 and the lens.
 bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int s, double nee_ratio, Candidate& out);
 

@@ -27,20 +27,24 @@ struct LightStore {
   };
   /// What a choice reads of so many entries, side by side.
   static constexpr uint32_t width = 32, runs = 8;
-  using Values = std::array<float, width>;  ///< of the entries of a block; every eighth from one on makes a run
-  using Sums = std::array<float, runs>;     ///< of the runs up to and with each
+  struct alignas(64) Values {  ///< of the entries of a block; every eighth from one on makes a run
+    float of[width] = {};
+    float& operator[](size_t i) { return of[i]; }
+    float operator[](size_t i) const { return of[i]; }
+  };
+  using Sums = std::array<float, runs>;  ///< of the runs up to and with each
   struct alignas(64) Block {
     float x[width] = {}, y[width] = {}, z[width] = {};
     float nx[width] = {}, ny[width] = {}, nz[width] = {};  ///< shading normal on the side that it is lit from
     float flux[width] = {};    ///< luminance that it scatters at right angles, taken as diffuse [per solid angle]; or 0
     float near[width] = {};    ///< (J1): geometry terms above 1 / near make the join the lesser strategy, if alike
     float behind[width] = {};  ///< -1 where it scatters to the other side too, else 0
-    bool glossy = false;       ///< whether what follows says anything (J6)
     float wx[width] = {}, wy[width] = {}, wz[width] = {};                         ///< where its light comes from, unit
     float matt[width] = {}, peak[width] = {}, f0[width] = {}, alpha[width] = {};  ///< its Gloss
     uint32_t region[width] = {};
     uint32_t path[width] = {};
     int s[width] = {};
+    uint32_t glossy = 0;  ///< of its entries from the first on, those for which wx to alpha say something (J6)
   };
   std::vector<Vertex> vertices;
   std::vector<Entry> entries;
@@ -73,7 +77,7 @@ void clear(LightStore& store);
 /// nee_ratio: Walk::v1.
 void add(LightStore& store, const Subpath& light, double nee_ratio);
 /// Makes the blocks, when all is added: each an even sample of all entries, entry i in block i % blocks, at i / blocks.
-/// For choose().
+/// For choose(). Glossy ones are the first of a block.
 void deal_blocks(LightStore& store);
 /// Makes blocks of neighbours, with what near of each entry is to be: entry i in block i / width, at i % width. For
 /// expect_all(), choose_some() and learn().
