@@ -51,7 +51,7 @@ float density(const std::vector<StrataNode>& nodes, uint32_t root, const Vec2& a
 
 Vec2 densities(const std::vector<StrataNode>& nodes, const TreePlace& a, const TreePlace& b) {
   Way to_a(nodes, a), to_b(nodes, b);
-  while (to_a.goes_on() | to_b.goes_on()) {
+  while (to_a.goes_on() || to_b.goes_on()) {
     if (to_a.goes_on()) to_a.go_on(nodes);
     if (to_b.goes_on()) to_b.go_on(nodes);
   }
