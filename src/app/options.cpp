@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "ajar/core/parallel.h"
+
 namespace ajar {
 namespace {
 template <class T>
@@ -44,7 +46,7 @@ size_t index_of(std::span<const char* const> names, const std::string& name) {
 }
 
 void add_threads(CLI::App& command, int& threads) {
-  command.add_option("--threads", threads, "threads (default: all)")->check(whole(1, 4096));
+  command.add_option("--threads", threads, "threads (default: all)")->check(whole(1, most_threads));
 }
 
 void add_time(CLI::App& command, std::optional<double>& at) {

@@ -29,8 +29,7 @@ double start_pdf(const LightTree& tree, const Fields* fields, uint32_t place) {
   if (!cut) return power / tree.power_before.back();
   const uint32_t entry = entry_of(fields->starts, *cut, place);
   const double of_entry = power_of(tree, fields->starts.entries[entry].first, end_of(tree, fields->starts, entry));
-  return std::min(power / std::max(of_entry, power), 1.0) *
-         std::max(double(share_of(fields->starts, *cut, entry)), 1e-30);
+  return power / std::max(of_entry, power) * std::max(double(share_of(fields->starts, *cut, entry)), 1e-30);
 }
 
 // Of a light of the sky.

@@ -113,11 +113,9 @@ constexpr double least_gain = 0.5;  // of relative variance, for which entries a
 // Whether the cut's entries would gain so little over the plain choice that they are not worth the time: both second
 // moments of what comes, over the square of its mean. What an entry brings is taken to be one value or nothing.   (V7)
 bool is_plain(const LightTree& tree, const Receiver& cell, const std::vector<CutNode>& cut) {
-  double promised = 0, mean = 0, plain = 0, learned = 0;
-  for (const CutNode& w : cut) promised += double(importance(tree, w.node, cell));
+  double mean = 0, plain = 0, learned = 0;
   for (const CutNode& w : cut) {
-    const double tried = std::max(double(w.e.tried), 1.0), square = double(w.e.square) / tried;
-    const double part = double(importance(tree, w.node, cell)) / promised;
+    const double tried = std::max(double(w.e.tried), 1.0), square = double(w.e.square) / tried, part = w.promise;
     mean += part * std::sqrt(square * double(w.e.hits) / tried);
     plain += sqr(part) * square / std::max(double(sky_share(tree, cell, w.node)), 1e-30);
     learned += sqr(part) * square / std::max(w.share, 1e-30);
@@ -146,14 +144,15 @@ void append(std::vector<CutNode>& cut, const LightTree& tree, const LightRules& 
   to.cuts.push_back(c);
 }
 
-// What the tree promises a cell of each entry; null: by power.
-void set_promises(const LightTree& tree, const Receiver* cell, std::vector<CutNode>& cut) {
+// What the tree promises a cell of each entry; null: by power. False where it promises nothing.
+bool set_promises(const LightTree& tree, const Receiver* cell, std::vector<CutNode>& cut) {
   double all = 0;
   for (CutNode& w : cut) {
     const LightNode& n = tree.nodes[w.node];
     all += w.promise = cell ? double(importance(tree, w.node, *cell)) : power_of(tree, n.first, n.last);
   }
   for (CutNode& w : cut) w.promise = all > 0 ? w.promise / all : 1 / double(cut.size());
+  return all > 0;
 }
 
 // A cut's entries with the evidence of the records. Shares are how often entries were chosen, where that was seen;
@@ -246,9 +245,9 @@ LearnedLights learn_lights(const LightTree& tree, const LearnedLights& v, const 
     const Receiver* cell = cells.empty() ? nullptr : &cells[i];
     const bool under_sky = cell && !tree.sky.empty();
     take(tree, v, tallies, v.cuts[i], rules, under_sky && v.cuts[i].plain ? cell : nullptr, cut);
-    set_promises(tree, cell, cut);
+    const bool promises = set_promises(tree, cell, cut);
     weigh(rules, cut);
-    const bool plain = under_sky && is_plain(tree, *cell, cut);
+    const bool plain = under_sky && (!promises || is_plain(tree, *cell, cut));
     unite(tree, parents, 0.2 * double(rules.divide), cut);
     size_t room = cut.size() < rules.most ? rules.most - cut.size() : 0;
     divided.clear();

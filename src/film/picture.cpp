@@ -30,17 +30,6 @@ std::string one_line(std::string text) {
   return text;
 }
 
-void require_sound(const std::string& path, const Picture& picture) {
-  if (picture.width <= 0 || picture.height <= 0 || picture.names.empty() ||
-      picture.pixels.size() != size_t(picture.width) * size_t(picture.height) * picture.names.size())
-    throw Error(fmt::format("{}: a picture of {}x{} with {} channels does not match its {} values; fill every pixel",
-                            path, picture.width, picture.height, picture.channels(), picture.pixels.size()));
-  std::set<std::string> seen;
-  for (const std::string& name : picture.names)
-    if (name.empty() || !seen.insert(name).second)
-      throw Error(fmt::format("{}: channel name \"{}\" is empty or there twice; name each channel once", path, name));
-}
-
 /// Encodes in memory, so that every error of the disk is seen by write_aside.
 void encode_and_write(const std::string& path, const char* format, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
                       const void* pixels) {
@@ -116,6 +105,18 @@ bool is_encoded(const OIIO::ImageInput& input, int channel) {
 }
 
 }  // namespace
+
+void require_sound(const std::string& name, const Picture& picture) {
+  if (picture.width <= 0 || picture.height <= 0 || picture.names.empty() ||
+      picture.pixels.size() != size_t(picture.width) * size_t(picture.height) * picture.names.size())
+    throw Error(fmt::format("{}: a picture of {}x{} with {} channels does not match its {} values; fill every pixel",
+                            name, picture.width, picture.height, picture.channels(), picture.pixels.size()));
+  std::set<std::string> seen;
+  for (const std::string& channel : picture.names)
+    if (channel.empty() || !seen.insert(channel).second)
+      throw Error(
+          fmt::format("{}: channel name \"{}\" is empty or there twice; name each channel once", name, channel));
+}
 
 PictureThreads::PictureThreads(int count) {
   if (count <= 0 || !OIIO::getattribute("threads", before_) || !OIIO::getattribute("exr_threads", exr_before_)) return;

@@ -35,7 +35,7 @@ void expect_part(const LightStore::Block& b, const Seer& seer, int most, Values&
 }
 
 template <bool glossy>
-void expect_all_parts(const LightStore::Block& b, const Seer& seer, int most, Values& out) {
+void expect_block(const LightStore::Block& b, const Seer& seer, int most, Values& out) {
   constexpr uint32_t half = LightStore::width / 2;
   if (b.glossy > half) return expect_part<glossy, true>(b, seer, most, out);
   if (b.glossy == 0) return expect_part<glossy, false>(b, seer, most, out);
@@ -47,9 +47,9 @@ void expect_all_parts(const LightStore::Block& b, const Seer& seer, int most, Va
 
 void expect(const LightStore::Block& b, const Seer& seer, int most, Values& out) {
   if (seer.gloss.peak > 0)
-    expect_all_parts<true>(b, seer, most, out);
+    expect_block<true>(b, seer, most, out);
   else
-    expect_all_parts<false>(b, seer, most, out);
+    expect_block<false>(b, seer, most, out);
 }
 
 void apply_chances(const LightStore::Block& b, const Views& views, uint32_t region, Values& values) {

@@ -59,10 +59,7 @@ void require_same_size(const Picture& image, const Picture& reference) {
     throw Error(fmt::format("the image has {}x{} pixels, the reference {}x{}; compare images of one size", image.width,
                             image.height, reference.width, reference.height));
   if (image.width <= 0 || image.height <= 0) throw Error("the images have no pixels; compare images that have some");
-  for (const Picture* p : {&image, &reference})
-    if (p->pixels.size() != size_t(p->width) * size_t(p->height) * p->names.size())
-      throw Error(fmt::format("a picture of {}x{} with {} channels has {} values; fill every pixel", p->width,
-                              p->height, p->names.size(), p->pixels.size()));
+  require_sound("the image", image), require_sound("the reference", reference);
 }
 
 Plane filter_separable(const Plane& in, std::span<const double> along_x, std::span<const double> along_y) {

@@ -26,11 +26,6 @@ struct LoadedScene {
   std::unique_ptr<Accel> accel;  ///< null before build
   double load_seconds = 0, build_seconds = 0;
 };
-/// A reference that was rendered and is none. Of that scene nothing can be measured; of others it can.
-struct ReferenceRefused : Error {
-  using Error::Error;
-};
-
 /// Loads with the suite's defines, size and depth (Scene::hints). Throws Error that names suite and scene.
 LoadedScene load(const Suite& suite, const BenchScene& scene);
 void build(LoadedScene& loaded);
@@ -39,6 +34,11 @@ struct Reference {
   Picture image;                   ///< channels R, G, B
   std::optional<double> relmse;    ///< its own estimated noise
   nlohmann::ordered_json made_by;  ///< how it came to be
+};
+
+/// A reference that was rendered and is none. Of that scene nothing can be measured; of others it can.
+struct ReferenceRefused : Error {
+  using Error::Error;
 };
 
 /// The reference if it is there; nothing if it is still to be made. Throws Error for one of another size or made for

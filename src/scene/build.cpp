@@ -197,7 +197,7 @@ uint32_t add_light(Scene& scene, LightKind kind, const Slot& radiance) {
   light.direction = {0, -1, 0};
   light.to_world = kind == LightKind::spot || kind == LightKind::projector ? look_at({0, 0, 0}, {0, -1, 0}) : Mat4(1);
   light.cutoff = 40 * pi / 180, light.beam = 30 * pi / 180;
-  if (kind == LightKind::sun) light.cone = 1 - std::cos(0.2679f * pi / 180);
+  if (kind == LightKind::sun) light.cone = 2 * sqr(std::sin(0.5358f / 4 * pi / 180));
   return append(scene, &Scene::lights, light);
 }
 

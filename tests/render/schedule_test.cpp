@@ -295,7 +295,7 @@ TEST(Schedule, OptionsThatCannotBeMeantAreErrors) {
   expect("seconds", [&](RenderOptions& o) { o.seconds = double(nan); });
   expect("cpu_seconds", [](RenderOptions& o) { o.cpu_seconds = -1; });
   expect("noise", [](RenderOptions& o) { o.noise = -0.1; });
-  expect("threads", [](RenderOptions& o) { o.threads = -1; });
+  for (const int threads : {-1, 100'000}) expect("threads", [=](RenderOptions& o) { o.threads = threads; });
   for (const int depth : {0, -2}) expect("max_depth", [=](RenderOptions& o) { o.max_depth = depth; });
   expect("roulette_depth", [](RenderOptions& o) { o.roulette_depth = -3; });
   for (const float radius : {nan, -1.0f, infinity})

@@ -1,6 +1,7 @@
 // Metrics against numbers worked out by hand, by other programs, and against what they promise.
 
 #include "ajar/report/metrics.h"
+#include "ajar/film/film.h"
 #include "ajar/report/sequence.h"
 
 #include <fmt/format.h>
@@ -51,6 +52,16 @@ TEST(Metrics, TrimmingLeavesOutTheWorstThousandth) {
   const double usual = 0.1 * 0.1 / 1.01, third = 4 / 1.01;
   EXPECT_NEAR(m.relmse_trimmed, (1998 * 3 * usual - usual + third) / (1998 * 3), 1e-7);
   EXPECT_GT(m.relmse, 5);
+}
+
+TEST(Metrics, PicturesOfTooFewValuesAreErrors) {
+  const Picture full{4, 4, {"R", "G", "B"}, std::vector<float>(48, 1.0f)}, lacking{4, 4, {"R", "G", "B"}, {1, 0, 0}};
+  EXPECT_NO_THROW(compare(full, full));
+  EXPECT_THROW(compare(lacking, full), Error);
+  EXPECT_THROW(compare(full, lacking), Error);
+  EXPECT_THROW(select(lacking, {"G"}), Error);
+  EXPECT_THROW(crop(lacking, 0, 0, 2, 2), Error);
+  EXPECT_THROW(develop(Film{}), Error);
 }
 
 TEST(Metrics, SamePicture) {

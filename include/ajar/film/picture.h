@@ -55,6 +55,9 @@ void write_png(const std::string& path, const Picture& picture, float exposure =
 Picture read_picture(const std::string& path);
 /// The file's attributes: single numbers as double, everything else as text. Throws Error.
 Metadata read_metadata(const std::string& path);
+/// Throws Error, which begins with the name, unless there are pixels, as many values as channels ask for, and channels
+/// have names of their own.
+void require_sound(const std::string& name, const Picture& picture);
 /// The same pixels with the named channels only, in that order; throws Error where one is missing.
 Picture select(const Picture& picture, const std::vector<std::string>& names);
 /// Indices of the channels R, G, B; thrice that of the only channel or of Y in a grey picture. Throws Error without
