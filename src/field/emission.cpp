@@ -135,7 +135,7 @@ bool guide_direction(const Fields* fields, Vec2 u, EmissionSample& out) {
 
 // Rays of camera subpaths to the light, per area of the disk across the scene and solid angle. 0: none, or unknown.
 double camera_rays(const Fields& fields, const WayBack& way, const Vec3& wi) {
-  if (!way.guide || way.guide->cell == none) return 0;
+  if (!way.guide || !is_known(*way.guide)) return 0;
   const float cosine = std::abs(glm::dot(way.guide->ng, wi));
   return cosine > 1e-4f ? double(fields.q.cells[way.guide->cell].visits) * way.pdf / double(cosine) : 0;
 }
@@ -208,7 +208,7 @@ void record_start(const Scene& scene, const Fields& fields, Training& training, 
   const double of_camera = start.density > 0 ? camera_rays(fields, way, wi) / start.density : 0;
   if (!(of_camera > 0) || start.region >= fields.disk.cells.size()) return;
   const Vec2 square = square_of(scene, way.guide->p, -wi);
-  const float per_watt = through * scatters(*way.guide) * fields.w.cells[way.guide->cell].total;
+  const float per_watt = through * scatters(*way.guide) * arrival(fields.w, *way.guide).all;
   record_on_disk(scene, fields, training, start.region, square, per_watt,
                  double(disk_pdf(scene, &fields, start.region, square)), of_camera, 1 / float(count));
 }

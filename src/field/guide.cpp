@@ -1,6 +1,6 @@
 #include "ajar/field/guide.h"
 
-#include "ajar/scene/bsdf/through.h"
+#include "breadth.h"
 
 namespace ajar {
 namespace {
@@ -18,60 +18,6 @@ bool is_open(const Guide& g, const Vec3& w, const Vec3& local) {
 float adjoint(const Guide& g, const Vec3& wi, const Vec3& local, Mode mode) {
   if (!g.bent || mode == Mode::radiance) return 1;
   return g.adjoint * std::abs(glm::dot(g.ng, wi) / local.z);  // (P4)
-}
-
-// What a boundary over a base takes of the field's part: three times what it reflects at right angles, so that its own
-// lobe, which reflects more at others, is never starved. The same for both directions of a path.
-float boundary(float share, float ior) {
-  const float reflected = sqr((ior - 1) / (ior + 1)), s = share * reflected;
-  return std::min(3 * s / std::max(s + (1 - share) * (1 - reflected), 1e-6f), 1.0f);
-}
-
-// 1 up to a roughness of 0.1, which fields of a few dozen strata cannot resolve, 0 from 0.5 on.
-float narrow(float alpha) { return 1 - std::clamp((alpha - 0.1f) * 2.5f, 0.0f, 1.0f); }
-
-// What lobe widths allow, over all that is on the base: what metal reflects, it reflects at all angles.
-float breadth(const Principled& p) {
-  const float base = max_component(p.base), dielectric = 1 - p.metallic;
-  const float reflected = dielectric * sqr((p.eta - 1) / (p.eta + 1)), coat = 0.04f * p.clearcoat;
-  const float all = dielectric * base + p.metallic * base + reflected + coat;
-  const float narrow_part =
-      (3 * reflected + p.metallic * base) * narrow(sqr(p.roughness) * p.aspect) + 3 * coat * narrow(p.clearcoat_alpha);
-  return std::max(1 - narrow_part / std::max(all, 1e-6f), 0.0f);
-}
-
-// How good a guide the field alone is, without the bsdf: 0 for narrow lobes, 1 for diffuse ones.
-float breadth(const Lobe& lobe) {
-  switch (lobe.kind) {
-    case LobeKind::diffuse:
-    case LobeKind::roughdiffuse:
-      return 1;
-    case LobeKind::plastic:
-      return 1 - boundary(lobe.plastic.share, lobe.plastic.ior);
-    case LobeKind::roughplastic:
-      return 1 - boundary(lobe.roughplastic.share, lobe.roughplastic.ior) * narrow(narrower(lobe.roughplastic.facets));
-    case LobeKind::roughconductor:
-      return 1 - narrow(narrower(lobe.roughconductor.facets));
-    case LobeKind::phong:
-      return 1 - lobe.phong.share * narrow(std::sqrt(2 / (lobe.phong.exponent + 2)));
-    case LobeKind::ward:
-      return 1 - lobe.ward.share * narrow(narrower(lobe.ward.facets));
-    case LobeKind::principled:
-      return breadth(lobe.principled);
-    default:
-      return 0;  // deltas
-  }
-}
-
-// Of what does not pass straight through. What turns light to the other side is left alone: other cells guide there,
-// and the densities of the way back.
-float breadth(const Bsdf& bsdf) {
-  float sum = 0;
-  for (int i = 0; i < bsdf.count; ++i) {
-    if (turns_through(bsdf.lobes[i])) return 0;
-    sum += bsdf.choice[i] * breadth(bsdf.lobes[i]);
-  }
-  return sum / bsdf.opacity;
 }
 
 const Field& field_of(const Guide& g) { return g.fields->of(g.side); }
@@ -97,45 +43,90 @@ void place(const Surface& surface, Guide& out) {
   if (at.cell != none) fetch(fields, at.cell);
 }
 
-void mix_fields(Guide& out) {
-  if (out.cell == none || !out.bsdf.has_smooth) return;
-  const float share = breadth(out.bsdf);
-  if (!(share > 0)) return;
-  const Field& other = field_of_other(out);
-  out.mix = share * mix_of(field_of(out).cells[out.cell]);
-  out.mix_other = share * mix_of(other.cells[out.cell]);
-  if (out.mix_other > 0) out.back = pdf(*out.fields, other, out.cell, out.p, out.wo);
+// Chances of a field's draws on either side of the surface, for a walk that arrives on the side of here: sides are
+// chosen by what is expected to come from there and be scattered.
+struct Sides {
+  float here = 0, there = 0;
+};
+Sides choose_side(const Field& field, uint32_t here, uint32_t there, const Breadth& b) {
+  const FieldCell &near = field.cells[here], &far = field.cells[there];
+  const float stays = (1 - b.through) * near.total, passes = b.through * far.total;
+  const float through = stays + passes > 0 ? passes / (stays + passes) : b.through;
+  return {(1 - through) * b.near * mix_of(near), through * mix_of(far)};
 }
 
-float pdf_field(const Guide& g, const Vec3& wi) { return pdf(*g.fields, field_of(g), g.cell, g.p, wi); }
+// Both sides are guided, or none, since a walk from there must know the same of the way back: not where another
+// material is behind.
+void mix_both_sides(Guide& out, const Breadth& b, const Vec3& ng) {
+  out.through = b.through;
+  out.far_cell = find(out.fields->table, out.p, facing(ng, -out.wo)).cell;
+  if (out.far_cell == none || out.bsdf.two_faced) return;
+  const Sides own = choose_side(field_of(out), out.cell, out.far_cell, b);
+  const float bsdf = 1 - own.here - own.there;
+  out.near = {own.here, bsdf}, out.far = {own.there, bsdf};
+  const Field& other = field_of_other(out);
+  const Sides from_near = choose_side(other, out.cell, out.far_cell, b);
+  const Sides from_far = choose_side(other, out.far_cell, out.cell, b);
+  out.back.near = {from_near.here, 1 - from_near.here - from_near.there};
+  out.back.far = {from_far.there, 1 - from_far.here - from_far.there};
+}
+
+void mix_one_side(Guide& out, const Breadth& b) {
+  const float mix = b.near * mix_of(field_of(out).cells[out.cell]);
+  const float other = b.near * mix_of(field_of_other(out).cells[out.cell]);
+  out.near = {mix, 1 - mix}, out.back.near = {other, 1 - other};
+}
+
+void mix_fields(Guide& out, const Vec3& ng) {
+  if (out.cell == none || !out.bsdf.has_smooth) return;
+  const Breadth b = breadth_of(out.bsdf);
+  if (b.through > 0)
+    mix_both_sides(out, b, ng);
+  else
+    mix_one_side(out, b);
+  if (out.back.near.field > 0 || out.back.far.field > 0)
+    out.back.pdf = pdf(*out.fields, field_of_other(out), out.cell, out.p, out.wo);
+}
+
+// Where one side alone is guided, it is whatever the direction.
+bool is_through(const Guide& g, const Vec3& local) { return g.far_cell != none && local.z * g.wo_local.z < 0; }
 
 // (G4) for both sides: the bsdf's densities become those of the mixtures. What passes a mask straight does so with the
 // mask's probability, whatever the fields on either side say: the mixtures are of the rest.
-float mix_in(const Bsdf& bsdf, float mix, float bsdf_pdf, float pdf_field) {
-  return (1 - mix) * bsdf_pdf + mix * bsdf.opacity * pdf_field;
+float mix_in(const Bsdf& bsdf, const Mix& mix, float bsdf_pdf, float pdf_field) {
+  return mix.bsdf * bsdf_pdf + mix.field * bsdf.opacity * pdf_field;
 }
-float mixed_back(const Guide& g, float bsdf_pdf) {
-  return g.mix_other > 0 ? mix_in(g.bsdf, g.mix_other, bsdf_pdf, g.back) : bsdf_pdf;
+float mixed_back(const Guide& g, bool through, float bsdf_pdf) {
+  const Mix& mix = through ? g.back.far : g.back.near;
+  return mix.bsdf < 1 ? mix_in(g.bsdf, mix, bsdf_pdf, g.back.pdf) : bsdf_pdf;
 }
-
-// Whether the field is to be sampled; otherwise u_lobe becomes that of the bsdf, which keeps its first part for
-// passage.
-bool takes_field(const Guide& g, float& u_lobe) {
-  const float pass = g.bsdf.pass, field = g.bsdf.opacity * g.mix;
-  if (!(g.mix > 0) || u_lobe < pass) return false;
-  if (u_lobe < pass + field) return true;
-  u_lobe = std::min(pass + (u_lobe - pass - field) / (1 - g.mix), one_minus_epsilon);
-  return false;
+float mixed(const Guide& g, const Vec3& wi, bool through, float bsdf_pdf) {
+  const Mix& mix = through ? g.far : g.near;
+  if (!(mix.field > 0)) return mix.bsdf * bsdf_pdf;
+  return mix_in(g.bsdf, mix, bsdf_pdf, pdf(*g.fields, field_of(g), through ? g.far_cell : g.cell, g.p, wi));
 }
 
-bool sample_field(const Guide& g, const Vec2& u, Mode mode, GuideSample& out) {
+// The cell whose field is to be sampled; none: the bsdf is, and u_lobe becomes that of the bsdf, which keeps its first
+// part for passage.
+uint32_t choose_cell(const Guide& g, float& u_lobe) {
+  const float pass = g.bsdf.pass, near = g.bsdf.opacity * g.near.field, far = g.bsdf.opacity * g.far.field;
+  if (!(g.near.bsdf < 1) || u_lobe < pass) return none;
+  if (u_lobe < pass + near) return g.cell;
+  if (u_lobe < pass + near + far) return g.far_cell;
+  u_lobe = std::min(pass + (u_lobe - pass - near - far) / g.near.bsdf, one_minus_epsilon);
+  return none;
+}
+
+bool sample_field(const Guide& g, uint32_t cell, const Vec2& u, Mode mode, GuideSample& out) {
   float pdf_field;
-  out.wi = sample(*g.fields, field_of(g), g.cell, g.p, u, pdf_field);
+  out.wi = sample(*g.fields, field_of(g), cell, g.p, u, pdf_field);
   const Vec3 local = g.frame.to_local(out.wi);
   if (!(pdf_field > 0) || !is_open(g, out.wi, local)) return false;
+  const bool through = is_through(g, local);
+  if (g.far_cell != none && through != (cell == g.far_cell)) return false;  // a cell's plane is not the surface's
   const BsdfEval e = eval(g.bsdf, g.wo_local, local, mode);
-  out.pdf = mix_in(g.bsdf, g.mix, e.pdf, pdf_field);
-  out.pdf_reverse = mixed_back(g, e.pdf_reverse);
+  out.pdf = mix_in(g.bsdf, through ? g.far : g.near, e.pdf, pdf_field);
+  out.pdf_reverse = mixed_back(g, through, e.pdf_reverse);
   out.weight = e.f * (std::abs(local.z) * adjoint(g, out.wi, local, mode) / out.pdf);
   out.eta = 1;
   out.delta = false;
@@ -150,7 +141,7 @@ void make_guide(const Scene& scene, const Fields* fields, Side side, const Surfa
   out.p = surface.p;
   out.wo = wo;
   out.fields = fields;
-  out.cell = none;
+  out.cell = out.far_cell = none;
   out.missing = 0;
   if (fields) place(surface, out);
   out.frame = surface.frame;
@@ -159,8 +150,8 @@ void make_guide(const Scene& scene, const Fields* fields, Side side, const Surfa
   out.ng = agreement < 0 ? -surface.ng : surface.ng;
   out.bent = std::abs(agreement) < 1 - 1e-6f;
   out.wo_local = out.frame.to_local(wo);
-  out.mix = out.mix_other = 0;
-  mix_fields(out);
+  out.near = out.far = {}, out.back = {}, out.through = 0;
+  mix_fields(out, surface.ng);
   out.blocked = false;
   if (!out.bent) return;
   out.blocked = !sides_agree(out, wo, out.wo_local);
@@ -168,15 +159,18 @@ void make_guide(const Scene& scene, const Fields* fields, Side side, const Surfa
 }
 
 Promise promise(const Guide& guide, const Rgb& beta) {
-  if (guide.cell == none || !connectable(guide)) return {};
-  const FieldCell& cell = guide.fields->of(guide.side).cells[guide.cell];
+  if (!is_known(guide) || !connectable(guide)) return {};
+  const Arrival arrives = arrival(guide.fields->of(guide.side), guide);
   const float scattered = luminance(beta * albedo(guide.bsdf, guide.wo_local)) * inv_pi;
-  return {scattered * cell.total, scattered * (cell.total - cell.direct)};
+  return {scattered * arrives.all, scattered * (arrives.all - arrives.direct)};
 }
 
 GuideEval evaluate(const Guide& guide, const Vec3& wi, Mode mode) {
   GuideEval e = evaluate_bsdf(guide, wi, mode);
-  if (guide.mix > 0 && is_open(guide, wi, guide.frame.to_local(wi))) e.pdf = with_field(guide, wi, e.pdf);
+  if (guide.near.bsdf < 1) {
+    const Vec3 local = guide.frame.to_local(wi);
+    if (is_open(guide, wi, local)) e.pdf = mixed(guide, wi, is_through(guide, local), e.pdf);
+  }
   return e;
 }
 
@@ -184,15 +178,17 @@ GuideEval evaluate_bsdf(const Guide& guide, const Vec3& wi, Mode mode) {
   const Vec3 local = guide.frame.to_local(wi);
   if (!is_open(guide, wi, local)) return {};
   const BsdfEval e = eval(guide.bsdf, guide.wo_local, local, mode);
-  return {e.f * (std::abs(local.z) * adjoint(guide, wi, local, mode)), e.pdf, mixed_back(guide, e.pdf_reverse)};
+  return {e.f * (std::abs(local.z) * adjoint(guide, wi, local, mode)), e.pdf,
+          mixed_back(guide, is_through(guide, local), e.pdf_reverse)};
 }
 
 float with_field(const Guide& g, const Vec3& wi, float bsdf_pdf) {
-  return g.mix > 0 ? mix_in(g.bsdf, g.mix, bsdf_pdf, pdf_field(g, wi)) : bsdf_pdf;
+  if (!(g.near.bsdf < 1)) return bsdf_pdf;
+  return mixed(g, wi, g.far_cell != none && is_through(g, g.frame.to_local(wi)), bsdf_pdf);
 }
 
 bool sample(const Guide& guide, float u_lobe, const Vec2& u, Mode mode, GuideSample& out) {
-  if (takes_field(guide, u_lobe)) return sample_field(guide, u, mode, out);
+  if (const uint32_t cell = choose_cell(guide, u_lobe); cell != none) return sample_field(guide, cell, u, mode, out);
   BsdfSample s;
   if (!sample(guide.bsdf, guide.wo_local, u_lobe, u, mode, s)) return false;
   out.wi = guide.frame.to_world(s.wi);
@@ -205,13 +201,14 @@ bool sample(const Guide& guide, float u_lobe, const Vec2& u, Mode mode, GuideSam
     out.pdf = s.pdf;
     out.pdf_reverse = s.pdf_reverse;
   } else if (s.delta) {
-    out.pdf = (1 - guide.mix) * s.pdf;
-    out.pdf_reverse = (1 - guide.mix_other) * s.pdf_reverse;
-    out.weight /= 1 - guide.mix;
+    out.pdf = guide.near.bsdf * s.pdf;
+    out.pdf_reverse = (is_through(guide, s.wi) ? guide.back.far : guide.back.near).bsdf * s.pdf_reverse;
+    out.weight /= guide.near.bsdf;
   } else {
-    out.pdf = with_field(guide, out.wi, s.pdf);
-    out.pdf_reverse = mixed_back(guide, s.pdf_reverse);
-    if (guide.mix > 0) out.weight *= s.pdf / out.pdf;
+    const bool through = is_through(guide, s.wi);
+    out.pdf = mixed(guide, out.wi, through, s.pdf);
+    out.pdf_reverse = mixed_back(guide, through, s.pdf_reverse);
+    if (guide.near.bsdf < 1) out.weight *= s.pdf / out.pdf;
   }
   return true;
 }

@@ -26,14 +26,13 @@ End end_of(const Fields& fields, const Vertex& v, const Vec3& d, Side side, cons
   e.cosine = std::abs(glm::dot(v.ng, d));
   e.q = v.emitted;
   if (passes(v.guide)) e.q += passed.q, e.w = passed.w;
-  if (v.guide.cell == none || !connectable(v.guide)) return e;
-  e.cell = v.guide.cell;
+  if (!is_known(v.guide) || !connectable(v.guide)) return e;
+  e.cell = cell_towards(v.guide, d);
   const float share = scatters(v.guide);
-  const FieldCell& q = fields.q.cells[e.cell];
-  const FieldCell& w = fields.w.cells[e.cell];
-  e.q += share * q.total, e.w = share * w.total;
-  e.own = side == Side::camera ? q.visits : w.visits;
-  e.other = side == Side::camera ? w.visits : q.visits;
+  e.q += share * arrival(fields.q, v.guide).all, e.w = share * arrival(fields.w, v.guide).all;
+  const float q = fields.q.cells[e.cell].visits, w = fields.w.cells[e.cell].visits;
+  e.own = side == Side::camera ? q : w;
+  e.other = side == Side::camera ? w : q;
   return e;
 }
 
@@ -66,9 +65,10 @@ void record_return(const Fields& fields, Training& training, const Vertex& a, co
                    float brought) {
   const Vec3 d = -b.guide.wo;
   const float cosine = std::abs(glm::dot(a.ng, d)), cosine_b = std::abs(glm::dot(b.ng, d));
-  if (a.guide.cell == none || !(cosine > 1e-4f) || !(cosine_b > 1e-4f)) return;
+  const uint32_t cell = cell_towards(a.guide, d);
+  if (cell == none || !(cosine > 1e-4f) || !(cosine_b > 1e-4f)) return;
   const double pdf = b.own * b.distance2 / cosine_b;
-  record(fields, fields.of(side), training.of(side), a.guide.cell,
+  record(fields, fields.of(side), training.of(side), cell,
          {a.p, d, std::sqrt(b.distance2), brought, float(cosine * inv_pi / pdf)});
 }
 
@@ -134,11 +134,25 @@ float brought_by(const Subpath& subpath, int i, Side side, float next) {
   return sum;
 }
 
+// A vertex whose light goes through counts on both sides.
+void record_sides(const Fields& fields, const Vertex& v, Tallies& tallies, Sightings& sightings) {
+  const Guide& g = v.guide;
+  const auto count = [&](uint32_t cell, CellKey missing, const Vec3& n) {
+    if (missing) record_missing(sightings, missing, n);
+    if (cell != none) record_visit(tallies, cell);
+  };
+  const Vec3 n = facing(v.ng, g.wo);
+  count(g.cell, g.missing, n);
+  if (!(g.through > 0)) return;
+  const Place beyond = find(fields.table, v.p, -n);
+  count(beyond.cell, beyond.missing, -n);
+}
+
 }  // namespace
 
 double back_density(const Vertex& v) {
   const Guide& g = v.guide;
-  return (1 - g.mix_other) * std::abs(glm::dot(v.ng, g.wo)) * inv_pi + g.mix_other * g.back;
+  return g.back.near.bsdf * std::abs(glm::dot(v.ng, g.wo)) * inv_pi + g.back.near.field * g.back.pdf;
 }
 
 void record_subpath(const Fields& fields, Training& training, Sightings& sightings, const Subpath& subpath, Side side) {
@@ -150,10 +164,7 @@ void record_subpath(const Fields& fields, Training& training, Sightings& sightin
     const Vertex& b = subpath[i];
     if (fields.rule == Rule::returned) brought = brought_by(subpath, i, side, brought);
     passed = passed_by(fields, subpath, i, side, passed);
-    if (connectable(b.guide)) {
-      if (b.guide.missing) record_missing(sightings, b.guide.missing, facing(b.ng, b.guide.wo));
-      if (b.guide.cell != none) record_visit(own_tallies, b.guide.cell);
-    }
+    if (connectable(b.guide)) record_sides(fields, b, own_tallies, sightings);
     const Vertex& a = subpath[i - 1];
     if (i == 1 || a.delta || !connectable(a.guide)) continue;
     if (fields.rule == Rule::returned)

@@ -16,7 +16,7 @@ constexpr float seen_joins = 12, inner_joins = 3, most_blocks = 32, seen_next_ev
 
 // Radiance that the camera subpath, at the first vertex that can be joined, expects its pixel to have.
 float expected_pixel(const Fields* fields, const Vertex& v) {
-  const bool known = fields && v.guide.cell != none && fields->q.cells[v.guide.cell].total > 0;
+  const bool known = fields && is_known(v.guide) && arrival(fields->q, v.guide).all > 0;
   return known ? luminance(v.beta) * expected_radiance(*fields, v.guide, 0.002f) : 0;
 }
 
@@ -66,8 +66,8 @@ bool is_one_point(const Scene& scene) { return scene.lights.size() == 1 && has_n
 // Rays to lights: the more, the more of the pixel's light is expected of them. Behind the first vertex that the lens
 // sees they all hang on the one walk that came there.
 uint8_t next_events(const Work& work, const Vertex& v, float worth) {
-  if (!(worth > 0) || v.guide.cell == none || is_one_point(*work.job.scene)) return 1;
-  const float brings = worth * work.job.walk.fields->q.cells[v.guide.cell].direct;
+  if (!(worth > 0) || !is_known(v.guide) || is_one_point(*work.job.scene)) return 1;
+  const float brings = worth * arrival(work.job.walk.fields->q, v.guide).direct;
   const float most = v.seen ? seen_next_events : inner_next_events;
   return brings > 0 ? uint8_t(std::clamp(most * std::sqrt(brings), 1.0f, 16.0f)) : uint8_t(1);  // (J4)
 }
@@ -83,7 +83,7 @@ void join_next_event(Work& work, float worth) {
   LightNumbers first;
   const int count = draw_light(*job.scene, v.guide, work.sample.sampler, first) ? v.next_events : 0;
   LightChances chances;
-  float received = 0;
+  Received received;
   for (int i = 0; i < count; ++i) {
     Candidate c;
     const LightNumbers u = spread(first, i, count);
@@ -92,18 +92,19 @@ void join_next_event(Work& work, float worth) {
     const bool lit = found && add_if_visible(work, c, 1, t);
     charge_join(work.scratch, 1, t);
     if (!work.sample.teaches) continue;
-    if (lit) received += luminance(c.arrives) * share_of_next_event(work, c);
+    if (lit) add(received, v.guide, c, share_of_next_event(work, c));
     teach_light(work, v, chances, c, lit, count);
   }
   if (!work.sample.teaches) return;
-  teach_direct(work, v, received / float(std::max(count, 1)));
+  const float rays = float(std::max(count, 1));
+  teach_direct(work, v, {received.near / rays, received.far / rays});
   if (!job.guided) record_place(v.guide, v.ng, *job.training, work.scratch.sightings);
 }
 
 // Share of the pixel's light that joins could bring the vertex: all that is not next-event estimation's.
 float left_to_joins(const Fields& fields, const Guide& guide, float worth) {
-  const FieldCell& cell = fields.q.cells[guide.cell];
-  return worth * std::max(cell.total - cell.direct, 0.0f);
+  const Arrival arrives = arrival(fields.q, guide);
+  return worth * std::max(arrives.all - arrives.direct, 0.0f);
 }
 
 Joiner joiner_of(const Job& job, const Subpath& camera, float worth) {
@@ -113,7 +114,7 @@ Joiner joiner_of(const Job& job, const Subpath& camera, float worth) {
   j.onwards = job.walk.counts.inner;
   j.before = count_before(job.walk, camera);
   j.joins = (v.seen ? seen_joins : inner_joins) * job.effort;
-  if (!v.seen || !(worth > 0) || v.guide.cell == none) return j;
+  if (!v.seen || !(worth > 0) || !is_known(v.guide)) return j;
   const float share = std::min(left_to_joins(*job.walk.fields, v.guide, worth), 1.0f);
   j.blocks = uint32_t(job.effort * most_blocks * std::sqrt(share) + 0.5f);  // (J9)
   return j;

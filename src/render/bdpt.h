@@ -32,14 +32,25 @@ inline Escape escape_of(const Subpath& subpath, const Walk& walk, float radiance
   return {walk.d, float(walk.pdf), radiance, arrived > 0 ? luminance(walk.beta) / arrived : 0};
 }
 
-/// What a vertex received from the light, or the lens, itself: nothing where something is in the way.
-inline void teach_direct(const Work& work, Vertex& v, float received) {
+/// What a vertex received from lights, or from the lens, themselves: on either side of its surface (Guide).
+struct Received {
+  float near = 0, far = 0;
+};
+inline void add(Received& sum, const Guide& guide, const Candidate& c, float share) {
+  const bool far = guide.through > 0 && is_far(guide, c.segment.d);
+  (far ? sum.far : sum.near) += luminance(c.arrives) * share;
+}
+/// Nothing where something is in the way.
+inline void teach_direct(const Work& work, Vertex& v, const Received& received) {
   const Guide& guide = v.guide;
-  if (!work.sample.teaches || !work.job.guided || guide.cell == none) return;
+  if (!work.sample.teaches || !work.job.guided || !is_known(guide)) return;
   const Fields& fields = *work.job.walk.fields;
-  if (guide.side == Side::light) received *= relative_importance(fields, guide);
-  v.received = received;
-  record_direct(fields.of(guide.side), work.job.training->of(guide.side), guide.cell, received);
+  const float scale = guide.side == Side::light ? relative_importance(fields, guide) : 1;
+  v.received = scale * glm::mix(received.near, received.far, guide.through);
+  const Field& field = fields.of(guide.side);
+  Tallies& tallies = work.job.training->of(guide.side);
+  record_direct(field, tallies, guide.cell, scale * received.near);
+  if (guide.far_cell != none) record_direct(field, tallies, guide.far_cell, scale * received.far);
   charge(work.scratch, &Ledger::learn_ticks);
 }
 

@@ -71,7 +71,9 @@ void trace_light_subpath(Work& work) {
     const bool seen = join_camera(*job.scene, work.sample.lens, light, light.n, work.nee_ratio, c) &&
                       add_if_visible(work, c, light.n, 1);
     charge_join(work.scratch, light.n, 1);
-    teach_direct(work, light[light.n - 1], seen ? luminance(c.arrives) : 0);
+    Received received;
+    if (seen) add(received, light[light.n - 1].guide, c, 1);
+    teach_direct(work, light[light.n - 1], received);
   }
   if (walk.escaped && work.sample.teaches && job.guided && light.n > 1)
     light.escape = escape_of(light, walk, left_to_hits(work, light[light.n - 1], walk.d));

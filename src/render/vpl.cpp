@@ -78,7 +78,7 @@ void guide_way_back(const Job& job, const Surface& surface, Subpath& camera) {
   Guide& guide = camera[camera.n - 1].guide;
   Guide guided;
   make_guide(*job.scene, job.walk.fields, Side::camera, surface, guide.wo, guided);
-  guide.mix_other = guided.mix_other, guide.back = guided.back;
+  guide.back = guided.back;
 }
 
 // Camera subpaths are not guided, but ask the fields which lamps to look for (V3) and which regions see each other:

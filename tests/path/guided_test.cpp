@@ -1,6 +1,7 @@
 // What subpaths teach, and how fields without a share in the mixtures guide: not at all, to the bit.
 #include <gtest/gtest.h>
 
+#include "ajar/core/warp.h"
 #include "kit/stage.h"
 #include "train.h"
 
@@ -62,6 +63,63 @@ TEST(Guided, BlackSurfacesTeachZeros) {
   const float open = brings(false);
   EXPECT_GT(open, 0);
   EXPECT_NEAR(brings(true) / open, 0.5, 0.15);
+}
+
+// A closed box in two halves with paper between them, the lamp in one.
+Scene lit_through_paper() {
+  Scene scene;
+  const uint32_t grey = add_diffuse(scene, Rgb(0.5f));
+  Material front, through, paper;
+  front.kind = MaterialKind::twosided, front.nested[0] = grey;
+  through.kind = MaterialKind::difftrans, through.transmittance = Slot(0.8f);
+  paper.kind = MaterialKind::blend, paper.weight = Slot(0.6f);
+  paper.nested[0] = add_material(scene, front), paper.nested[1] = add_material(scene, through);
+  add_box(scene, Vec3(-1), Vec3(1), grey, true);
+  add_quad(scene, {0, -1, -1}, {0, 2, 0}, {0, 0, 2}, add_material(scene, paper));
+  add_area_light(scene, add_quad(scene, {-0.9f, 0.9f, -0.5f}, {0.8f, 0, 0}, {0, 0, 1}, add_diffuse(scene, Rgb(0))),
+                 Rgb(1));
+  set_camera(scene, {0.5f, 0.5f, 0.9f}, {0.5f, -1, 0}, 90, 24, 24);
+  finish(scene);
+  return scene;
+}
+
+// Irradiance at a point by paths that scatter evenly, without the fields.
+double irradiance(const Scene& scene, const Accel& accel, const Vec3& p, const Vec3& n, int paths) {
+  double sum = 0;
+  for (int i = 0; i < paths; ++i) {
+    Sampler sampler = make_sampler(SamplerKind::independent, 9, Side::camera, uint64_t(i), 0);
+    Vec3 o = p + 1e-4f * n, d = make_frame(n).to_world(to_cosine_hemisphere(sampler.next2()));
+    double beta = pi;
+    for (int k = 0; k < 40; ++k) {
+      Hit hit;
+      if (!accel.intersect(o, d, 0, infinity, hit)) break;
+      const Surface surface = make_surface(scene, hit, o, d);
+      if (scene.shapes[surface.shape].light != none && glm::dot(surface.ng, d) < 0) sum += beta;
+      Guide guide;
+      make_guide(scene, nullptr, Side::camera, surface, -d, guide);
+      GuideSample s;
+      const float u_lobe = sampler.next1();
+      if (!sample(guide, u_lobe, sampler.next2(), Mode::radiance, s)) break;
+      beta *= luminance(s.weight);
+      o = offset(surface.p, surface.ng, surface.error, s.wi), d = s.wi;
+    }
+  }
+  return sum / paths;
+}
+
+// What is lit from behind is as bright as that makes it: else all that a field knows of the dark half is nothing.
+TEST(Guided, PaperIsAsBrightAsWhatIsBehindIt) {
+  const Scene scene = lit_through_paper();
+  const Accel accel(scene);
+  const Fields fields = train(scene, accel, 40, 4000, 0);
+  double known[2] = {}, true_[2] = {};
+  for (int i = 0; i < 24; ++i) {
+    const Vec3 floor((i % 2 ? 0.15f : -0.15f) * float(1 + i % 6), -1, 0.35f * float(i / 6) - 0.5f), up(0, 1, 0);
+    const uint32_t cell = find(fields.table, floor, up).cell;
+    ASSERT_NE(cell, none);
+    known[i % 2] += fields.q.cells[cell].total, true_[i % 2] += irradiance(scene, accel, floor, up, 2000);
+  }
+  EXPECT_NEAR((known[1] / known[0]) / (true_[1] / true_[0]), 1, 0.3);
 }
 
 }  // namespace

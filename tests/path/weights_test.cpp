@@ -241,7 +241,7 @@ void expect_oracle(const Scene& scene, int paths, const Case& which) {
     if (start_light(scene, tracer.options, l, light.path, light.walk)) tracer.go_on(light, l, true);
     compare_all(tracer, light, camera, lens, c, tally);
     for (const Traced* t : {&camera, &light})
-      for (int k = 1; k < t->path.n; ++k) ++vertices, guided += t->path[k].guide.mix > 0.2f;
+      for (int k = 1; k < t->path.n; ++k) ++vertices, guided += t->path[k].guide.near.bsdf < 0.8f;
   }
   for (size_t way = 0; way < ways; ++way) {
     // Rounding of positions makes a few weights uncertain, where vertices nearly touch or directions graze.

@@ -7,6 +7,7 @@
 #include "ajar/field/emission.h"
 #include "ajar/scene/build.h"
 #include "kit/chisquare.h"
+#include "kit/stage.h"
 #include "measure.h"
 
 namespace ajar {
@@ -16,8 +17,32 @@ struct Stage {
   const char* name;
   Scene (*make)();
   Structure structure = Structure::adaptive;
+  bool through = false;  ///< of vertices that are guided, those that let light through are looked at
 };
 void PrintTo(const Stage& s, std::ostream* out) { *out << s.name; }
+
+// All light that it stops goes through; its cells hold more of it than one plane.
+Scene with_shade() {
+  Scene room = kit::stage();
+  Material leaf;
+  leaf.kind = MaterialKind::difftrans, leaf.transmittance = Slot(0.8f);
+  add_sphere(room, {0.1f, -0.1f, 0.1f}, 0.6f, add_material(room, leaf));
+  finish(room);
+  return room;
+}
+
+// A sheet across the room.
+Scene divided_by_paper() {
+  Scene room = kit::stage();
+  Material front, through, paper;
+  front.kind = MaterialKind::twosided, front.nested[0] = add_diffuse(room, Rgb(0.7f));
+  through.kind = MaterialKind::difftrans, through.transmittance = Slot(0.8f);
+  paper.kind = MaterialKind::blend, paper.weight = Slot(0.6f);
+  paper.nested[0] = add_material(room, front), paper.nested[1] = add_material(room, through);
+  add_quad(room, {-0.95f, -0.9f, 0.35f}, {1.8f, 0, 0.2f}, {0.1f, 1.7f, 0}, add_material(room, paper));
+  finish(room);
+  return room;
+}
 
 const Stage stages[] = {{"two_rooms", [] { return two_rooms(20); }},
                         {"cornell", [] { return cornell(); }},
@@ -25,6 +50,8 @@ const Stage stages[] = {{"two_rooms", [] { return two_rooms(20); }},
                         {"bump_plane", [] { return bump_plane(); }},
                         {"rough_plastic", [] { return with_material(MaterialKind::roughplastic, 0.4f); }},
                         {"mask", [] { return with_material(MaterialKind::mask); }},
+                        {"paper", divided_by_paper, Structure::adaptive, true},
+                        {"shade", with_shade, Structure::adaptive, true},
                         {"grid", [] { return two_rooms(20); }, Structure::grid},
                         {"probes", [] { return two_rooms(20); }, Structure::probes}};
 
@@ -45,9 +72,10 @@ Scene with_grey_lamp(Scene scene) {
 struct Trained {
   Scene scene;
   Accel accel;
+  bool through;
   RenderState state;
 
-  explicit Trained(const Stage& s) : scene(with_grey_lamp(s.make())), accel(scene) {
+  explicit Trained(const Stage& s) : scene(with_grey_lamp(s.make())), accel(scene), through(s.through) {
     RenderOptions o = statistical("guided-bdpt");
     o.spp = 7;  // all of them young: learning would go on
     o.learn.trust = 8, o.learn.divide_cell = 400, o.learn.least_contrast = 1;
@@ -57,7 +85,8 @@ struct Trained {
   const Fields& fields() const { return state.learning.fields; }
 };
 
-// Guided subpaths of both sides; every vertex where a field has a share.
+// Guided subpaths of both sides; every vertex where a field has a share, of those that let light through if that is
+// asked.
 std::vector<Spot> vertices_of(const Trained& t, int most) {
   std::vector<Spot> out;
   WalkOptions options;
@@ -74,7 +103,8 @@ std::vector<Spot> vertices_of(const Trained& t, int most) {
         continue;
       while (path.n < 6 && step(t.scene, t.accel, options, path, walk, surface)) {
         const Guide& g = path[path.n - 1].guide;
-        if (g.mix > 0 && !g.blocked) out.push_back({surface, g.wo, side});
+        const bool asked = t.through == (g.far_cell != none) && g.near.bsdf < 1;
+        if (asked && !g.blocked) out.push_back({surface, g.wo, side});
         if (!scatter(options, sampler, path, walk)) break;
       }
     }
@@ -205,7 +235,7 @@ TEST_P(LearnedFields, EachSideKnowsTheOther) {
       off += std::abs(e.pdf_reverse - s.pdf_reverse) > 1e-3f * s.pdf_reverse;
     }
     ++compared;
-    guided += h.mix > 0 && g.mix > 0;
+    guided += h.near.bsdf < 1 && g.near.bsdf < 1;
     off += std::abs(s.pdf_reverse - expected) > 1e-3f * std::max(expected, 1e-4f);
   }
   EXPECT_GT(guided, 300);

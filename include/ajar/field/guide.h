@@ -10,8 +10,19 @@
 
 namespace ajar {
 
+/// Of (G4), for directions on one side of the surface: how often the field is drawn from there, and how often the bsdf.
+struct Mix {
+  float field = 0, bsdf = 1;
+};
+
+/// What the other side's walks do here that go on to wo: from wo's side of the surface (near), or from beyond it (far).
+struct BackMix {
+  Mix near, far;
+  float pdf = 0;  ///< density of their field alone
+};
+
 /// Everything that scatters at one vertex. Built once per vertex by make_guide; world directions, unit, away from the
-/// surface. mix is the share g of the learned field in (G4); 0 leaves the bsdf alone and costs nothing.
+/// surface. Side by side with wo is near, on the surface's other side far: what is opaque has near alone.
 struct Guide {
   Frame frame;       ///< shading frame, turned as twosided, bump and normal maps asked
   Vec3 ng{0, 0, 1};  ///< geometric normal on the shading normal's side
@@ -23,11 +34,12 @@ struct Guide {
   bool blocked = false;      ///< the normals disagree about the side of wo: nothing scatters
   Side side = Side::camera;  ///< whose subpath this is: Q guides the camera's, W the light's
   const Fields* fields = nullptr;  ///< null: unguided
-  uint32_t cell = none;
-  CellKey missing = 0;  ///< the cell that should have been found
-  float mix = 0;        ///< g of (G4) with which this side's field is mixed in
-  float mix_other = 0;  ///< with which the other side mixes its field in here
-  float back = 0;       ///< density with which the other side's field, alone, goes to wo from here
+  uint32_t cell = none;            ///< near
+  uint32_t far_cell = none;        ///< where light is scattered through
+  CellKey missing = 0;             ///< the cell that should have been found
+  Mix near, far;                   ///< with which this side's field is mixed in; bsdf alike in both
+  BackMix back;
+  float through = 0;  ///< of what is scattered, the share that goes through
   Bsdf bsdf;
 };
 
@@ -58,16 +70,41 @@ inline bool connectable(const Guide& guide) {
 inline bool may_scatter(const Guide& guide, const Vec3& w) {
   return !guide.bsdf.opaque || (glm::dot(guide.frame.n, w) > 0 && (!guide.bent || glm::dot(guide.ng, w) > 0));
 }
-/// The region that the vertex is in (views.h), no_region if unknown.
+/// Whether a world direction, of any length, is on the surface's other side, as wo's.
+inline bool is_far(const Guide& guide, const Vec3& w) {
+  return glm::dot(guide.ng, w) * glm::dot(guide.ng, guide.wo) < 0;
+}
+/// The cell on the direction's side of the surface.
+inline uint32_t cell_towards(const Guide& guide, const Vec3& w) {
+  return guide.through > 0 && is_far(guide, w) ? guide.far_cell : guide.cell;
+}
+/// The region that the vertex is in (views.h), no_region if unknown. Its joins through the surface are that region's,
+/// too.
 inline uint32_t region_of(const Guide& guide) {
   return guide.cell == none ? no_region : guide.fields->cells[guide.cell].region;
 }
 /// Radiance that a vertex scatters to any one direction per irradiance, taken as diffuse [1/sr]; luminance.
 inline float scatters(const Guide& guide) { return luminance(albedo(guide.bsdf, guide.wo_local)) * inv_pi; }
-/// Radiance that a vertex of a known cell is expected to scatter, luminance; never less than this share of a typical
+/// Whether fields know the vertex: both of its sides, if light is scattered through.
+inline bool is_known(const Guide& guide) {
+  return guide.cell != none && (!(guide.through > 0) || guide.far_cell != none);
+}
+/// What a field brings a vertex that is known and that it can scatter: of either side of the surface by the share that
+/// is scattered from there, so that the vertex's albedo times it is what it scatters.
+struct Arrival {
+  float all = 0;
+  float direct = 0;  ///< of it, by next-event estimation (the lens's connection) at the vertex itself
+};
+inline Arrival arrival(const Field& field, const Guide& guide) {
+  const FieldCell& here = field.cells[guide.cell];
+  if (guide.far_cell == none) return {here.total, here.direct};
+  const FieldCell& there = field.cells[guide.far_cell];
+  return {glm::mix(here.total, there.total, guide.through), glm::mix(here.direct, there.direct, guide.through)};
+}
+/// Radiance that a known vertex is expected to scatter, luminance; never less than this share of a typical
 /// value: errors are judged against it.
 inline float expected_radiance(const Fields& fields, const Guide& guide, float least) {
-  const double out = scatters(guide) * fields.q.cells[guide.cell].total;
+  const double out = scatters(guide) * arrival(fields.q, guide).all;
   return float(std::sqrt(sqr(out) + sqr(double(least) * fields.q.unit)));
 }
 /// What a pixel's error counts for where the lens sees this vertex: errors are judged relative to the image, so the
@@ -83,7 +120,7 @@ struct Promise {
 };
 Promise promise(const Guide& guide, const Rgb& beta);
 /// Whether sample reads u_lobe.
-inline bool chooses(const Guide& guide) { return guide.bsdf.chooses || guide.mix > 0; }
+inline bool chooses(const Guide& guide) { return guide.bsdf.chooses || guide.near.bsdf < 1; }
 /// What the vertex scatters between wo and the unit world direction wi by all but delta events, and with which
 /// densities either side would go that way: pdf is sample's, pdf_reverse that of wo for the other side's walk that
 /// comes from wi. All zero where nothing can leave towards wi.

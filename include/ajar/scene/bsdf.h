@@ -25,6 +25,7 @@ struct Bsdf {
   bool chooses = false;  ///< sample reads u_lobe
   bool opaque = true;    ///< f is 0 unless both directions are in front
   bool bent = false;     ///< lobes have normals of their own
+  bool two_faced = false;  ///< there is another material behind
   float opacity = 1;  ///< 1 - opacity of the light passes straight through as a delta; weights account for it already
   float pass = 0;     ///< probability of sampling that passage; choice adds up to the rest
   float weights[max_lobes];

@@ -305,6 +305,7 @@ void resolve(const Scene& scene, const Surface& surface, const Vec3& wo, Frame& 
   const Shape& shape = scene.shapes[surface.shape];
   Resolver r{scene, surface, frame, out, glm::dot(wo, surface.ng) < 0};
   add(r, shape.material, 1);
+  out.two_faced = r.two_faced;
   if (r.turned) frame.t = -frame.t;
   if (r.split) settle_normals(frame, out);
   out.choice[0] = 1;
