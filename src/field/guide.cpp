@@ -45,13 +45,13 @@ void place(const Surface& surface, Guide& out) {
 
 // Chances of a field's draws on either side of the surface, for a walk that arrives on the side of here: sides are
 // chosen by what is expected to come from there and be scattered.
-struct Sides {
+struct SideChances {
   float here = 0, there = 0;
 };
-Sides choose_side(const Field& field, uint32_t here, uint32_t there, const Breadth& b) {
+SideChances choose_side(const Field& field, uint32_t here, uint32_t there, const Breadth& b) {
   const FieldCell &near = field.cells[here], &far = field.cells[there];
   const float stays = (1 - b.through) * near.total, passes = b.through * far.total;
-  const float through = stays + passes > 0 ? passes / (stays + passes) : b.through;
+  const float through = stays + passes > 0 ? passes / (stays + passes) : b.through;  // (G17)
   return {(1 - through) * b.near * mix_of(near), through * mix_of(far)};
 }
 
@@ -61,12 +61,12 @@ void mix_both_sides(Guide& out, const Breadth& b, const Vec3& ng) {
   out.through = b.through;
   out.far_cell = find(out.fields->table, out.p, facing(ng, -out.wo)).cell;
   if (out.far_cell == none || out.bsdf.two_faced) return;
-  const Sides own = choose_side(field_of(out), out.cell, out.far_cell, b);
+  const SideChances own = choose_side(field_of(out), out.cell, out.far_cell, b);
   const float bsdf = 1 - own.here - own.there;
   out.near = {own.here, bsdf}, out.far = {own.there, bsdf};
   const Field& other = field_of_other(out);
-  const Sides from_near = choose_side(other, out.cell, out.far_cell, b);
-  const Sides from_far = choose_side(other, out.far_cell, out.cell, b);
+  const SideChances from_near = choose_side(other, out.cell, out.far_cell, b);
+  const SideChances from_far = choose_side(other, out.far_cell, out.cell, b);
   out.back.near = {from_near.here, 1 - from_near.here - from_near.there};
   out.back.far = {from_far.there, 1 - from_far.here - from_far.there};
 }

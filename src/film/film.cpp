@@ -19,6 +19,15 @@ bool is_done(const Film& film, const glm::ivec2& shift, int x, int y) {
   return uint32_t(row * tiles_x(film) + column) < film.chunks;
 }
 
+// What makes of a sum of n passes one of n + 1 with the weighted mean.   (A2)
+struct Turn {
+  double keep = 1, add = 1;
+};
+Turn turn(double weight, double own, double n) {
+  if (n == 0) return {};
+  return {weight * (n + 1) / ((weight + own) * n), own * (n + 1) / (weight + own)};
+}
+
 }  // namespace
 
 double share_of_pass(const Film& film) {
@@ -80,30 +89,40 @@ void drop_passes(Film& film) {
   for (auto* sums : {&film.camera_sum, &film.splat_sum, &film.half_sum, &film.square_sum})
     std::fill(sums->begin(), sums->end(), glm::dvec3(0));
   std::fill(film.brightest.begin(), film.brightest.end(), Film::Bright{});
+  film.weight = 0;
   film.dropped += film.passes;
   film.passes = 0;
 }
 
-void finish_pass(Film& film) {
+void finish_pass(Film& film, double weight) {
   const float scale = 1.0f / float(film.pixels());
+  const double n = film.passes;
+  const Turn all = turn(film.weight, weight, n), half = turn(film.weight / 2, weight, n / 2);
+  const auto add = [](glm::dvec3& sum, const Turn& by, const glm::dvec3& x) { sum = sum * by.keep + x * by.add; };
   parallel_ranges(film.pixels(), 16384, [&](size_t from, size_t to) {
     for (size_t i = from; i < to; ++i) {
       glm::dvec3 x(film.camera[i]);
-      film.camera_sum[i] += x;
+      add(film.camera_sum[i], all, x);
       film.camera[i] = Rgb(0);
       if (film.splats) {
         const glm::dvec3 s(film.splat[i] * scale);
-        film.splat_sum[i] += s;
+        add(film.splat_sum[i], all, s);
         film.splat[i] = Rgb(0);
         x += s;
       }
-      if (film.passes % 2 == 0) film.half_sum[i] += x;
-      film.square_sum[i] += x * x;
-      if (!film.brightest.empty()) note(film, i, Rgb(x));
+      if (film.passes % 2 == 0) add(film.half_sum[i], half, x);
+      add(film.square_sum[i], all, x * x);
+      if (!film.brightest.empty()) note(film, i, Rgb(x), float(weight));
     }
   });
+  film.weight += weight;
   ++film.passes;
   film.chunks = 0;
+}
+
+glm::dvec3 sum_since(const Film& film, const Film& before, const glm::dvec3& now, const glm::dvec3& then) {
+  const double scale = (film.passes - before.passes) / (film.weight - before.weight);
+  return scale * (film.weight / film.passes * now - before.weight / before.passes * then);
 }
 
 Picture develop(const Film& film) {

@@ -47,13 +47,13 @@ float limit_at(const Film& film, int x, int y) {
 
 void limit_fireflies(Film& film) { film.brightest.assign(kept * film.pixels(), {}); }
 
-void note(Film& film, size_t pixel, const Rgb& value) {
+void note(Film& film, size_t pixel, const Rgb& value, float weight) {
   Bright* of = &film.brightest[kept * pixel];
   const float l = luminance(value);
   if (!(l > luminance(of[kept - 1].value))) return;
   int at = kept - 1;
   for (; at > 0 && luminance(of[at - 1].value) < l; --at) of[at] = of[at - 1];
-  of[at] = {value, film.passes};
+  of[at] = {value, film.passes, weight};
 }
 
 std::vector<float> limits(const Film& film) {
@@ -69,10 +69,10 @@ float kept_share(const Rgb& value, float limit) {
 glm::dvec3 excess(const Film& film, size_t pixel, float limit) {
   glm::dvec3 sum(0);
   for (int k = 0; k < kept; ++k) {
-    const Rgb& value = film.brightest[kept * pixel + k].value;
-    sum += glm::dvec3(value * (1 - kept_share(value, limit)));
+    const Bright& bright = film.brightest[kept * pixel + k];
+    sum += glm::dvec3(bright.value * (1 - kept_share(bright.value, limit))) * double(bright.weight);
   }
-  return sum;
+  return film.weight > 0 ? sum * (film.passes / film.weight) : sum;
 }
 
 }  // namespace ajar

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "ajar/core/sampler.h"
 #include "ajar/film/pixels.h"
@@ -106,6 +107,11 @@ std::vector<uint8_t> draw_counts(double scale, const std::vector<double>& deviat
 }
 
 }  // namespace
+
+double mean_count(const Adaptive& adaptive) {
+  const std::vector<uint8_t>& counts = adaptive.counts;
+  return counts.empty() ? 1 : std::accumulate(counts.begin(), counts.end(), 0.0) / double(counts.size());
+}
 
 double samples_of_pass(const Film& film, const Adaptive& adaptive) {
   double samples = 0, pixels = double(adaptive.passes) * double(adaptive.spread.size());

@@ -10,7 +10,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind checkpoint_kind = {"AJARck26", "checkpoint", "render once with --checkpoint",
+constexpr FileKind checkpoint_kind = {"AJARck27", "checkpoint", "render once with --checkpoint",
                                       "start again without --resume"};
 
 // One list of fields for both ways.
@@ -19,7 +19,7 @@ void film_fields(Io& io, State& film) {
   io.value(film.width), io.value(film.height), io.value(film.passes), io.value(film.dropped), io.value(film.chunks);
   io.array(film.camera), io.array(film.splat);
   io.array(film.camera_sum), io.array(film.splat_sum), io.array(film.half_sum), io.array(film.square_sum);
-  io.array(film.brightest);
+  io.array(film.brightest), io.value(film.weight);
 }
 
 template <class Io, class State>

@@ -148,10 +148,16 @@ void judge(const PlainLook& look, bool merges, uint32_t passes, Plain& plain) {
   decide(look.plain + plain.missed / samples, look.deviation, guided, samples, passes, plain);
 }
 
-PassHalves operator-(PassHalves a, const PassHalves& b) {
-  a.passes -= b.passes;
-  for (size_t i = 0; i < a.sum.size(); ++i) a.sum[i] -= b.sum[i], a.half[i] -= b.half[i];
-  return a;
+// Those of a film since it was as another one.
+PassHalves halves_since(const Film& film, const Film& before, const std::vector<uint32_t>& squares) {
+  PassHalves out = halves_of(film, squares);
+  const PassHalves old = halves_of(before, squares);
+  out.passes -= old.passes;
+  for (size_t i = 0; i < out.sum.size(); ++i) {
+    out.sum[i] = sum_since(film, before, out.sum[i], old.sum[i]);
+    out.half[i] = sum_since(film, before, out.half[i], old.half[i]);
+  }
+  return out;
 }
 
 SetAside set_aside(const RenderState& state) { return {state.film, state.stats.ledger}; }
@@ -179,7 +185,8 @@ void doubt_plain(bool merges, RenderState& state) {
   Film& film = state.film;
   if (film.chunks > 0 || film.passes == plain.passes || !std::has_single_bit(film.passes)) return;
   const std::vector<uint32_t> all = spread_squares(film, square_count(film));
-  const PassHalves guided = halves_of(plain.guided.film, all), since = halves_of(film, all) - guided;
+  const PassHalves guided = halves_of(plain.guided.film, all);
+  const PassHalves since = halves_since(film, plain.guided.film, all);
   const PlainLook look = compare_halves(guided, since);
   const double passes = since.passes;
   plain.taken = (look.plain + 2 * look.deviation) * passes + missed_by_plain(look, merges) * std::min(passes, rarest) <=

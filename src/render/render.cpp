@@ -121,6 +121,9 @@ void teach(const Scene& scene, const RenderOptions& options, float light_rate, R
   watch.add_to(state.stats.learn_seconds, state.stats.learn_cpu_seconds);
 }
 
+// What a pass counts for: its camera samples of a pixel, in the mean. Images of strategies take all passes alike.
+double weight_of(const Job& job) { return job.adaptive && !job.techniques ? mean_count(*job.adaptive) : 1; }
+
 // The next chunks of the pass at hand, and what follows it if it is over.
 void trace_next(const Job& job, const RenderOptions& options, Workshop& shop, RenderState& state) {
   Film& film = state.film;
@@ -131,7 +134,7 @@ void trace_next(const Job& job, const RenderOptions& options, Workshop& shop, Re
   note_rejected(state.stats, shop.vpls, pass.job.seed);
   take_counts(pass.job, shop.scratches, state);
   if (film.chunks < chunk_count(film)) return;
-  finish_pass(film);
+  finish_pass(film, weight_of(pass.job));
   if (pass.job.beyond) ++state.balance.passes;
   if (pass.job.adaptive) ++state.adaptive.passes;
   if (job.learning && !pass.plain) teach(*job.scene, options, pass.job.light_rate, state);

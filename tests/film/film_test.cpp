@@ -1,4 +1,4 @@
-// The estimate of the error against figures worked out by hand.
+// Sums of passes, and the estimate of the error, against figures worked out by hand.
 #include "ajar/film/film.h"
 
 #include <gtest/gtest.h>
@@ -12,10 +12,10 @@ Film film_of(int width, int height, bool splats = false) {
   return make_film(camera, make_filter(FilterKind::box), splats);
 }
 
-void pass(Film& film, const std::vector<Rgb>& camera, const std::vector<Rgb>& splat = {}) {
+void pass(Film& film, const std::vector<Rgb>& camera, const std::vector<Rgb>& splat = {}, double weight = 1) {
   film.camera = camera;
   if (film.splats) film.splat = splat;
-  finish_pass(film);
+  finish_pass(film, weight);
 }
 
 std::vector<Rgb> grey(std::initializer_list<float> values) {
@@ -130,6 +130,43 @@ TEST(Variance, IsFinite) {
   Film film = film_of(1, 1);
   for (const float v : {0.f, 1e20f}) pass(film, grey({v}));
   EXPECT_EQ(variance(film).pixels[0], std::numeric_limits<float>::max());
+}
+
+// Camera and splats (of one pixel, so not divided): 1 + 1 and 2 + 0, then three times 6 + 2, 4 + 4, 0 + 8.
+TEST(Weights, PassesCountByThem) {
+  Film film = film_of(1, 1, true);
+  pass(film, grey({1}), grey({1}));
+  pass(film, grey({2}), grey({0}));
+  pass(film, grey({6}), grey({2}), 3);
+  pass(film, grey({4}), grey({4}), 3);
+  EXPECT_NEAR(develop(film).pixels[0], (2 + 2 + 3 * 8 + 3 * 8) / 8., 1e-6);
+  EXPECT_NEAR(film.camera_sum[0].x / 4, (1 + 2 + 3 * 6 + 3 * 4) / 8., 1e-12);
+  EXPECT_NEAR(film.half_sum[0].x / 2, (2 + 3 * 8) / 4., 1e-12);
+  EXPECT_NEAR(film.square_sum[0].x / 4, (4 + 4 + 3 * 64 + 3 * 64) / 8., 1e-12);
+  pass(film, grey({0}), grey({8}), 3);
+  EXPECT_NEAR(film.splat_sum[0].x / 5, (1 + 0 + 3 * 2 + 3 * 4 + 3 * 8) / 11., 1e-12);
+  EXPECT_NEAR(film.half_sum[0].x / 3, (2 + 3 * 8 + 3 * 8) / 7., 1e-12);
+  drop_passes(film);
+  EXPECT_EQ(film.weight, 0);
+}
+
+TEST(Weights, AlikeTheyChangeNothing) {
+  Film ones = film_of(1, 1), threes = film_of(1, 1);
+  for (const float v : {0.3f, 1.7f, 2.9f, 0.01f, 5.3f}) pass(ones, grey({v})), pass(threes, grey({v}), {}, 3);
+  EXPECT_EQ(ones.camera_sum, threes.camera_sum);
+  EXPECT_EQ(ones.half_sum, threes.half_sum);
+  EXPECT_EQ(ones.square_sum, threes.square_sum);
+}
+
+TEST(Weights, WhatCameSinceIsWhatThosePassesBring) {
+  Film film = film_of(1, 1), later = film_of(1, 1);
+  for (const float v : {1.f, 5.f, 2.f, 2.f}) pass(film, grey({v}));
+  const Film before = film;
+  const float values[] = {3, 4, 7, 0, 1, 2};
+  for (int i = 0; i < 6; ++i)
+    for (Film* f : {&film, &later}) pass(*f, grey({values[i]}), {}, i < 2 ? 1.5 : 4);
+  EXPECT_NEAR(sum_since(film, before, film.camera_sum[0], before.camera_sum[0]).x, later.camera_sum[0].x, 1e-12);
+  EXPECT_NEAR(sum_since(film, before, film.half_sum[0], before.half_sum[0]).x, later.half_sum[0].x, 1e-12);
 }
 
 }  // namespace

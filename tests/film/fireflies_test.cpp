@@ -19,9 +19,9 @@ Film limited_film(int width, int height, bool splats = false) {
   return film;
 }
 
-void add_pass(Film& film, const std::vector<Rgb>& camera) {
+void add_pass(Film& film, const std::vector<Rgb>& camera, double weight = 1) {
   film.camera = camera;
-  finish_pass(film);
+  finish_pass(film, weight);
 }
 
 // A number in (0, 1).
@@ -105,6 +105,17 @@ TEST(Fireflies, OneSparkIsTakenBackToTwiceWhatIsAround) {
   EXPECT_FLOAT_EQ(channel(found, 4, 3), 1);
   film.camera = spark, film.chunks = chunk_count(film);
   EXPECT_FLOAT_EQ(channel(develop(film), 3, 3), 13 / 11.0f) << "the pass at work is limited as well";
+}
+
+TEST(Fireflies, SparksCountAsTheirPassDoes) {
+  Film film = limited_film(8, 8);
+  const std::vector<Rgb> image(64, Rgb(1));
+  for (int n = 0; n < 8; ++n) add_pass(film, image);
+  std::vector<Rgb> spark = image;
+  spark[27] = Rgb(1e6f);
+  add_pass(film, spark, 4);
+  add_pass(film, image, 4);
+  EXPECT_NEAR(channel(develop(film), 3, 3), (8 + 4 * 2 + 4) / 16.0, 1e-4);
 }
 
 // What light subpaths bring counts with what the camera's do, in the pass at work too.

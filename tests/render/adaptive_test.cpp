@@ -214,6 +214,19 @@ TEST(Adaptive, APassIsTheMeanOfAPixelsSamples) {
   EXPECT_LT(estimate_error(more.film).relmse_trimmed, estimate_error(even.film).relmse_trimmed);
 }
 
+TEST(Adaptive, PassesCountByTheirSamples) {
+  RenderOptions options = statistical("guided-bdpt", 4);
+  options.spp = 129;
+  const auto [more, even] = with_and_without(options);
+  EXPECT_EQ(even.film.weight, 129);
+  const double each = mean_count(more.adaptive);
+  ASSERT_GT(each, 1.05);
+  EXPECT_GT(more.film.weight, 129 + 0.9 * (each - 1)) << "the last one does";
+  EXPECT_LT(more.film.weight, 8 * 129);
+  options.techniques = true;
+  EXPECT_EQ(with_and_without(options).more.film.weight, 129) << "images of strategies take all passes alike";
+}
+
 // What the samples of a pass see differs: else more of them would bring nothing.
 TEST(Adaptive, FurtherSamplesHaveNumbersOfTheirOwn) {
   RenderOptions options = statistical("guided-bdpt", 2);

@@ -20,7 +20,8 @@ struct Splat {
 };
 
 /// Estimate of every pixel of the crop window, rows from the top. Sums are over finished passes; the pass at work
-/// stands apart, so that an interrupted render can be developed, or continued to the same bytes.
+/// stands apart, so that an interrupted render can be developed, or continued to the same bytes. Where passes do not
+/// count alike, sums are those of so many passes that do, with the same mean.
 struct Film {
   int x0 = 0, y0 = 0, width = 0, height = 0;
   Filter filter;
@@ -35,8 +36,10 @@ struct Film {
   struct Bright {
     Rgb value{0};
     uint32_t pass = 0;
+    float weight = 1;  ///< what the pass counts for
   };
   std::vector<Bright> brightest;
+  double weight = 0;     ///< what finished passes count for, all together
   uint32_t passes = 0;   ///< finished
   uint32_t dropped = 0;  ///< passes before those, no longer in the sums; even
   uint32_t chunks = 0;   ///< of the pass at work that are done
@@ -75,8 +78,11 @@ Film frame_of(const Film& film);
 void merge(Film& film, const std::vector<std::vector<Splat>>& chunks);
 /// Forgets all finished passes: those to come go on with their numbers.
 void drop_passes(Film& film);
-/// Closes the pass at work.
-void finish_pass(Film& film);
+/// Closes the pass at work, which counts for so much; an even pass and the one after it for as much as each other.
+void finish_pass(Film& film, double weight = 1);
+/// Of a sum of the film and what it was when the film was as before: what the passes since then have brought, as many of
+/// them that count alike. (A2)
+glm::dvec3 sum_since(const Film& film, const Film& before, const glm::dvec3& now, const glm::dvec3& then);
 /// Linear RGB estimate, its fireflies limited where the film is to; includes the chunks of the pass at work that are
 /// done.
 Picture develop(const Film& film);

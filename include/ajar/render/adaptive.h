@@ -14,9 +14,9 @@ struct PixelSpread {
   uint32_t counts[2] = {0, 0};  ///< in even passes and odd ones: numbers of their sequences that are used up
 };
 
-/// A pass is the mean of a pixel's samples in it, so that it counts as much as any other pass, however many they are.
-/// How many is told by the pixels around it alone: points of a sequence lie where those before them do not, so that a
-/// pixel whose own first points had a say would be too bright, or too dark. (A1)
+/// A pass is the mean of a pixel's samples in it, so that it counts as much in one pixel as in another. How many is
+/// told by the pixels around it alone: points of a sequence lie where those before them do not, so that a pixel whose
+/// own first points had a say would be too bright, or too dark. (A1)
 struct Adaptive {
   std::vector<PixelSpread> spread;  ///< per pixel; empty until looked at
   uint32_t passes = 0;              ///< that it is of
@@ -29,6 +29,8 @@ struct Adaptive {
 inline uint32_t count_of(const Adaptive* adaptive, uint64_t pixel) {
   return adaptive && !adaptive->counts.empty() ? adaptive->counts[pixel] : 1;
 }
+/// In the mean of all pixels.
+double mean_count(const Adaptive& adaptive);
 /// In the mean, of the passes that it is of, with the part of the pass at work.
 double samples_of_pass(const Film& film, const Adaptive& adaptive);
 /// Passes of one camera sample each that would have drawn all numbers which were drawn so far.
