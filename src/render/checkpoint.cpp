@@ -100,7 +100,8 @@ bool is_sound(const Film& film, size_t pixels) {
          film.half_sum.size() == pixels && film.square_sum.size() == pixels && film.splat.size() == splats &&
          film.splat_sum.size() == splats &&
          (film.brightest.empty() || film.brightest.size() == Film::brightest_kept * pixels) &&
-         film.chunks < chunk_count(film) && film.dropped % 2 == 0;
+         film.chunks < chunk_count(film) && film.dropped % 2 == 0 && film.weight >= film.passes &&
+         film.weight <= Adaptive::most * film.passes;
 }
 
 // Throws Error unless the file is of this render.

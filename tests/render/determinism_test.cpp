@@ -208,6 +208,19 @@ TEST(Determinism, DamagedOrForeignCheckpointsAreErrors) {
   }
 }
 
+TEST(Determinism, CheckpointsOfPassesThatCountForNothingAreErrors) {
+  const Scene scene = strip(false);
+  const RenderOptions o = options_of("bdpt", 2);
+  RenderState state = rendered(scene, Accel(scene), o);
+  const File file("ajar_weights");
+  for (const double weight : {0.0, 1.5, 17.0, -2.0, std::nan("")}) {
+    state.film.weight = weight;
+    save_checkpoint(file.path, "key", state);
+    RenderState fresh = start_render(scene, o);
+    EXPECT_THROW(load_checkpoint(file.path, "key", fresh), Error) << weight;
+  }
+}
+
 // Large images would not fit otherwise: those set aside are mostly none.
 TEST(Determinism, CheckpointsBringNoFilmThatIsNotThere) {
   const Scene scene = strip(false);

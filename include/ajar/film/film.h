@@ -78,10 +78,11 @@ Film frame_of(const Film& film);
 void merge(Film& film, const std::vector<std::vector<Splat>>& chunks);
 /// Forgets all finished passes: those to come go on with their numbers.
 void drop_passes(Film& film);
-/// Closes the pass at work, which counts for so much; an even pass and the one after it for as much as each other.
+/// Closes the pass at work, which counts for so much, above 0; an even pass and the one after it for as much as each
+/// other.
 void finish_pass(Film& film, double weight = 1);
-/// Of a sum of the film and what it was when the film was as before: what the passes since then have brought, as many of
-/// them that count alike. (A2)
+/// Of a sum of the film and what it was when the film was as before: what the passes since then have brought, as many
+/// of them that count alike. (A2)
 glm::dvec3 sum_since(const Film& film, const Film& before, const glm::dvec3& now, const glm::dvec3& then);
 /// Linear RGB estimate, its fireflies limited where the film is to; includes the chunks of the pass at work that are
 /// done.
@@ -90,9 +91,10 @@ Picture develop(const Film& film);
 /// their pixels, or of what fell on pixels from all of the film (splats).
 Picture average(const Film& film, const std::vector<glm::dvec3>& sums, bool splats);
 /// Variance of the estimate per pixel and channel, from the spread of the passes; zero before the second pass. Exact in
-/// expectation for independent numbers. Passes of a low-discrepancy sequence err less together than apart, so there it
-/// is too large (1.1 to 2 times measured in easy scenes, docs/results/error.md), and tests that read it milder. The
-/// halves below would be exact for both, but with a single degree of freedom per pixel no test could stand on them.
+/// expectation for independent numbers where passes count alike. Passes of a low-discrepancy sequence err less together
+/// than apart, so there it is too large (1.1 to 2 times measured in easy scenes, docs/results/error.md), and tests that
+/// read it milder. The halves below would be exact for both, but with a single degree of freedom per pixel no test
+/// could stand on them.
 Picture variance(const Film& film);
 
 /// What is expected of `ajar compare` against the true image; infinite before the second pass, and as long as nothing
