@@ -1,5 +1,7 @@
 #include "ajar/path/record.h"
 
+#include "ajar/field/nextevent.h"
+
 namespace ajar {
 namespace {
 
@@ -134,18 +136,13 @@ float brought_by(const Subpath& subpath, int i, Side side, float next) {
   return sum;
 }
 
-// A vertex whose light goes through counts on both sides.
-void record_sides(const Fields& fields, const Vertex& v, Tallies& tallies, Sightings& sightings) {
-  const Guide& g = v.guide;
-  const auto count = [&](uint32_t cell, CellKey missing, const Vec3& n) {
-    if (missing) record_missing(sightings, missing, n);
-    if (cell != none) record_visit(tallies, cell);
-  };
-  const Vec3 n = facing(v.ng, g.wo);
-  count(g.cell, g.missing, n);
-  if (!(g.through > 0)) return;
-  const Place beyond = find(fields.table, v.p, -n);
-  count(beyond.cell, beyond.missing, -n);
+// A vertex whose light goes through counts on its other side as well.
+void record_beyond(const Fields& fields, const Vertex& v, Tallies& tallies, Sightings& sightings) {
+  if (!(v.guide.through > 0)) return;
+  const Vec3 n = facing(v.ng, -v.guide.wo);
+  const Place at = find(fields.table, v.p, n);
+  if (at.missing) record_missing(sightings, at.missing, n);
+  if (at.cell != none) record_visit(tallies, at.cell);
 }
 
 }  // namespace
@@ -164,7 +161,10 @@ void record_subpath(const Fields& fields, Training& training, Sightings& sightin
     const Vertex& b = subpath[i];
     if (fields.rule == Rule::returned) brought = brought_by(subpath, i, side, brought);
     passed = passed_by(fields, subpath, i, side, passed);
-    if (connectable(b.guide)) record_sides(fields, b, own_tallies, sightings);
+    if (connectable(b.guide)) {
+      record_place(b.guide, b.ng, training, sightings);
+      record_beyond(fields, b, own_tallies, sightings);
+    }
     const Vertex& a = subpath[i - 1];
     if (i == 1 || a.delta || !connectable(a.guide)) continue;
     if (fields.rule == Rule::returned)

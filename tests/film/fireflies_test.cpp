@@ -93,12 +93,16 @@ TEST(Fireflies, WhatComesInEveryPassStays) {
   EXPECT_FLOAT_EQ(channel(develop(film), 4, 3), 0.1f);
 }
 
+// White of 8x8, and the same with a spark at (3, 3).
+const std::vector<Rgb> white(64, Rgb(1)), spark = [] {
+  std::vector<Rgb> out = white;
+  out[27] = Rgb(1e6f);
+  return out;
+}();
+
 TEST(Fireflies, OneSparkIsTakenBackToTwiceWhatIsAround) {
   Film film = limited_film(8, 8);
-  const std::vector<Rgb> image(64, Rgb(1));
-  for (int n = 0; n < 9; ++n) add_pass(film, image);
-  std::vector<Rgb> spark = image;
-  spark[27] = Rgb(1e6f);
+  for (int n = 0; n < 9; ++n) add_pass(film, white);
   add_pass(film, spark);
   const Picture found = develop(film);
   EXPECT_FLOAT_EQ(channel(found, 3, 3), 1.1f) << "nine times 1, once 2";
@@ -109,21 +113,17 @@ TEST(Fireflies, OneSparkIsTakenBackToTwiceWhatIsAround) {
 
 TEST(Fireflies, SparksCountAsTheirPassDoes) {
   Film film = limited_film(8, 8);
-  const std::vector<Rgb> image(64, Rgb(1));
-  for (int n = 0; n < 8; ++n) add_pass(film, image);
-  std::vector<Rgb> spark = image;
-  spark[27] = Rgb(1e6f);
+  for (int n = 0; n < 8; ++n) add_pass(film, white);
   add_pass(film, spark, 4);
-  add_pass(film, image, 4);
+  add_pass(film, white, 4);
   EXPECT_NEAR(channel(develop(film), 3, 3), (8 + 4 * 2 + 4) / 16.0, 1e-4);
 }
 
 // What light subpaths bring counts with what the camera's do, in the pass at work too.
 TEST(Fireflies, SplatsOfThePassAtWorkAreLimited) {
   Film film = limited_film(8, 8, true);
-  const std::vector<Rgb> image(64, Rgb(1));
-  for (int n = 0; n < 9; ++n) add_pass(film, image);
-  film.camera = image, film.chunks = chunk_count(film);
+  for (int n = 0; n < 9; ++n) add_pass(film, white);
+  film.camera = white, film.chunks = chunk_count(film);
   film.splat[27] = Rgb(1e6f * 64);
   EXPECT_FLOAT_EQ(channel(develop(film), 3, 3), 1.1f) << "nine times 1, once 2";
   EXPECT_FLOAT_EQ(channel(develop(film), 4, 3), 1);
@@ -152,9 +152,9 @@ TEST(Fireflies, DroppedPassesAreForgotten) {
   for (int n = 0; n < 4; ++n) add_pass(film, std::vector<Rgb>(16, Rgb(100)));
   drop_passes(film);
   for (int n = 0; n < 3; ++n) add_pass(film, std::vector<Rgb>(16, Rgb(1)));
-  std::vector<Rgb> spark(16, Rgb(1));
-  spark[5] = Rgb(50);
-  add_pass(film, spark);
+  std::vector<Rgb> bright(16, Rgb(1));
+  bright[5] = Rgb(50);
+  add_pass(film, bright);
   EXPECT_FLOAT_EQ(channel(develop(film), 1, 1), 1.25f);
 }
 

@@ -33,6 +33,15 @@ void add_open_room(Scene& scene, uint32_t floor_material) {
 
 void add_ceiling(Scene& scene) { add_quad(scene, {-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, add_diffuse(scene, Rgb(0.6f))); }
 
+uint32_t add_paper(Scene& scene, const Rgb& reflectance) {
+  Material front, through, paper;
+  front.kind = MaterialKind::twosided, front.nested[0] = add_diffuse(scene, reflectance);
+  through.kind = MaterialKind::difftrans, through.transmittance = Slot(0.8f);
+  paper.kind = MaterialKind::blend, paper.weight = Slot(0.6f);
+  paper.nested[0] = add_material(scene, front), paper.nested[1] = add_material(scene, through);
+  return add_material(scene, paper);
+}
+
 uint32_t add_lamp(Scene& scene, float half, const Slot& radiance) {
   const uint32_t black = add_diffuse(scene, Rgb(0));
   return add_area_light(scene, add_quad(scene, {-half, 0.98f, -half}, {2 * half, 0, 0}, {0, 0, 2 * half}, black),
@@ -46,6 +55,18 @@ Scene stage(int size) {
   add_open_room(scene);
   add_ceiling(scene);
   add_lamp(scene, 0.4f, Rgb(12, 10, 8));
+  return scene;
+}
+
+Scene lit_through_paper() {
+  Scene scene;
+  const uint32_t grey = add_diffuse(scene, Rgb(0.5f));
+  add_box(scene, Vec3(-1), Vec3(1), grey, true);
+  add_quad(scene, {0, -1, -1}, {0, 2, 0}, {0, 0, 2}, add_paper(scene, Rgb(0.5f)));
+  add_area_light(scene, add_quad(scene, {-0.9f, 0.9f, -0.5f}, {0.8f, 0, 0}, {0, 0, 1}, add_diffuse(scene, Rgb(0))),
+                 Rgb(1));
+  set_camera(scene, {0.5f, 0.5f, 0.9f}, {0.5f, -1, 0}, 90, 24, 24);
+  finish(scene);
   return scene;
 }
 

@@ -65,24 +65,6 @@ TEST(Guided, BlackSurfacesTeachZeros) {
   EXPECT_NEAR(brings(true) / open, 0.5, 0.15);
 }
 
-// A closed box in two halves with paper between them, the lamp in one.
-Scene lit_through_paper() {
-  Scene scene;
-  const uint32_t grey = add_diffuse(scene, Rgb(0.5f));
-  Material front, through, paper;
-  front.kind = MaterialKind::twosided, front.nested[0] = grey;
-  through.kind = MaterialKind::difftrans, through.transmittance = Slot(0.8f);
-  paper.kind = MaterialKind::blend, paper.weight = Slot(0.6f);
-  paper.nested[0] = add_material(scene, front), paper.nested[1] = add_material(scene, through);
-  add_box(scene, Vec3(-1), Vec3(1), grey, true);
-  add_quad(scene, {0, -1, -1}, {0, 2, 0}, {0, 0, 2}, add_material(scene, paper));
-  add_area_light(scene, add_quad(scene, {-0.9f, 0.9f, -0.5f}, {0.8f, 0, 0}, {0, 0, 1}, add_diffuse(scene, Rgb(0))),
-                 Rgb(1));
-  set_camera(scene, {0.5f, 0.5f, 0.9f}, {0.5f, -1, 0}, 90, 24, 24);
-  finish(scene);
-  return scene;
-}
-
 // Irradiance at a point by paths that scatter evenly, without the fields.
 double irradiance(const Scene& scene, const Accel& accel, const Vec3& p, const Vec3& n, int paths) {
   double sum = 0;
@@ -109,7 +91,7 @@ double irradiance(const Scene& scene, const Accel& accel, const Vec3& p, const V
 
 // What is lit from behind is as bright as that makes it: else all that a field knows of the dark half is nothing.
 TEST(Guided, PaperIsAsBrightAsWhatIsBehindIt) {
-  const Scene scene = lit_through_paper();
+  const Scene scene = kit::lit_through_paper();
   const Accel accel(scene);
   const Fields fields = train(scene, accel, 40, 4000, 0);
   double known[2] = {}, true_[2] = {};

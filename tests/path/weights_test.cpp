@@ -383,6 +383,22 @@ TEST(Weights, GlassAndDiffuse) {
   }
 }
 
+// Both sides are guided; not where what is behind reflects otherwise, since a way back would be guided otherwise.
+TEST(Weights, Paper) {
+  Scene scene = stage();
+  add_sphere(scene, {0.1f, -0.3f, 0.2f}, 0.5f, add_paper(scene, Rgb(0.7f)));
+  expect_oracle(finished(std::move(scene)));
+}
+
+TEST(Weights, TwoFacedPaper) {
+  Scene scene = stage();
+  const uint32_t metal = add_material(scene, of_kind(MaterialKind::roughconductor, 0.2f));
+  const uint32_t paper = add_paper(scene, Rgb(0.7f));
+  scene.materials[scene.materials[paper].nested[0]].nested[1] = metal;
+  add_sphere(scene, {0.1f, -0.3f, 0.2f}, 0.5f, paper);
+  expect_oracle(finished(std::move(scene)));
+}
+
 TEST(Weights, ManyLights) {
   Scene scene = open(LightKind::constant);
   scene.lights[add_light(scene, LightKind::point, Rgb(1))].position = {0.5f, 0.5f, 0.5f};

@@ -34,12 +34,7 @@ Scene with_shade() {
 // A sheet across the room.
 Scene divided_by_paper() {
   Scene room = kit::stage();
-  Material front, through, paper;
-  front.kind = MaterialKind::twosided, front.nested[0] = add_diffuse(room, Rgb(0.7f));
-  through.kind = MaterialKind::difftrans, through.transmittance = Slot(0.8f);
-  paper.kind = MaterialKind::blend, paper.weight = Slot(0.6f);
-  paper.nested[0] = add_material(room, front), paper.nested[1] = add_material(room, through);
-  add_quad(room, {-0.95f, -0.9f, 0.35f}, {1.8f, 0, 0.2f}, {0.1f, 1.7f, 0}, add_material(room, paper));
+  add_quad(room, {-0.95f, -0.9f, 0.35f}, {1.8f, 0, 0.2f}, {0.1f, 1.7f, 0}, kit::add_paper(room, Rgb(0.7f)));
   finish(room);
   return room;
 }
@@ -267,6 +262,17 @@ TEST_P(LearnedFields, GuidedEmissionSamplesItsDensity) {
   EXPECT_NEAR(r.mass, r.drawn, 0.01) << r.message;
   EXPECT_LE(off, chi_options.samples / 200);
   EXPECT_GT(moved, chi_options.samples / 10) << "hardly guided: the test means little";
+}
+
+// Next-event rays find the lamp through the paper, too: its light is of the lit side all the same.
+TEST(LearnedFieldsOf, WhatLampsBringIsOfTheSideThatTheyAreOn) {
+  const Trained t({"halves", kit::lit_through_paper});
+  const auto direct = [&](float side) {
+    const uint32_t cell = find(t.fields().table, {0, 0.2f, 0.1f}, {side, 0, 0}).cell;
+    return cell == none ? -1 : t.fields().q.cells[cell].direct;
+  };
+  EXPECT_GT(direct(-1), 0);
+  EXPECT_EQ(direct(1), 0);
 }
 
 TEST(LearnedFieldsOf, EvenLampsAreLeftAlone) {
