@@ -165,7 +165,9 @@ bool is_texture(const Node& node);
 void check_texture(Loader& loader, const Node& node);
 /// A parameter that may be a number, a colour or a texture.
 Slot slot(Params& params, std::initializer_list<const char*> names, const Slot& otherwise, Colour kind);
-/// The same of an element at hand.
+/// The same, which a texture without a name may stand for too.
+Slot main_slot(Params& params, std::initializer_list<const char*> names, const Slot& otherwise, Colour kind);
+/// A slot of an element at hand.
 Slot slot_of(Loader& loader, const Node& node, Colour kind);
 /// A slot of which one number is asked: of colours the luminance, in version 0.x the mean of their parts; but for that,
 /// checkerboards with their colours exchanged.

@@ -70,8 +70,6 @@ Daylight daylight(Params& p) {
     day.sun = glm::normalize(glm::inverse(glm::dmat3(glm::dmat4(day.to_world))) * glm::normalize(towards));
     day.zenith = std::acos(std::clamp(day.sun.y, -1.0, 1.0));
   }
-  if (day.zenith > glm::radians(90.001))  // the horizon, turned and rounded
-    fail(p.loader, p.node, "the sun is below the horizon: take another sun_direction, or another time and place");
   return day;
 }
 
@@ -222,8 +220,17 @@ void load_daylight(Params& p, bool with_sky, bool with_sun) {
   const double weight = number(p, "sampling_weight", 1), scale = scale_of(p, "scale", 1);
   if (weight < 0) fail(p.loader, p.node, "sampling_weight should not be negative");
   const bool both = with_sky && with_sun;
-  if (with_sky) add_sky(p, day, both ? scale_of(p, "sky_scale", scale) : scale, float(weight));
-  if (with_sun) add_sun(p, day, both ? scale_of(p, "sun_scale", scale) : scale, float(weight));
+  const double of_sky = both ? scale_of(p, "sky_scale", scale) : scale,
+               of_sun = both ? scale_of(p, "sun_scale", scale) : scale;
+  if (day.zenith > glm::radians(90.001)) {  // the horizon, turned and rounded
+    const std::string night = "the sun is below the horizon";
+    if (p.loader.document.old)
+      fail(p.loader, p.node, night + ": take another sun_direction, or another time and place");
+    for (const char* unread : {"resolution", "sun_radius_scale", "sun_aperture"}) find(p, {unread});
+    return note(p.loader, p.node, night + ": neither it nor the sky shines");
+  }
+  if (with_sky) add_sky(p, day, of_sky, float(weight));
+  if (with_sun) add_sun(p, day, of_sun, float(weight));
 }
 
 }  // namespace ajar

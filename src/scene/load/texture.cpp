@@ -317,6 +317,16 @@ Slot product(Params& params, const Slot& a, const Slot& b) {
   return s;
 }
 
+Slot main_slot(Params& p, std::initializer_list<const char*> names, const Slot& otherwise, Colour kind) {
+  if (std::none_of(names.begin(), names.end(), [&](const char* name) { return has(p, name); }))
+    for (size_t i = 0; i < p.node.children.size(); ++i)
+      if (p.node.children[i].name.empty() && is_texture(follow(p.loader, p.node.children[i]))) {
+        p.used[i] = true;
+        return slot_of(p.loader, p.node.children[i], kind);
+      }
+  return slot(p, names, otherwise, kind);
+}
+
 Slot slot_of(Loader& loader, const Node& node, Colour kind) {
   const Node& meant = meant_by(loader, node);
   if (!is_texture(meant)) return Slot(colour_of(loader, meant, kind));

@@ -148,6 +148,13 @@ TEST(Bsdf, Phong) {
   EXPECT_NEAR(s.materials[0].reflectance.value.x, 0.6, 1e-6);
   EXPECT_NEAR(s.materials[0].specular.value.x, 0.4, 1e-6);
   EXPECT_TRUE(says(s.notes, "scaled down"));
+  // Mitsuba 0.6 scales both by what they come to, and leaves a hundredth.
+  const std::string bright = number("diffuseReflectance", 0.9) + number("specularReflectance", 9);
+  for (const char* type : {"phong", "ward"}) {
+    m = last(bsdf(type, bright), {}, "0.6.0");
+    EXPECT_NEAR(m.reflectance.value.x, 0.09, 1e-6) << type;
+    EXPECT_NEAR(m.specular.value.x, 0.9, 1e-6) << type;
+  }
 }
 
 // By the largest sum that there may be.
@@ -187,6 +194,8 @@ TEST(Bsdf, Principled) {
       bsdf("principled", number("main_specular_sampling_rate", 2) + number("diffuse_reflectance_sampling_rate", 2)));
   EXPECT_FALSE(says(hinted.notes, "sampling_rate"));
   EXPECT_SAYS(error_of(bsdf("principled", number("specular", -1))), "specular should be");
+  EXPECT_SAYS(error_of(bsdf("principled", number("specular", 12.5))), "specular should be");
+  EXPECT_NEAR(last(bsdf("principled", number("specular", 2))).ior, 7.0 / 3, 1e-5);  // 16 % at normal incidence
   EXPECT_EQ(last(bsdf("principled", number("specular", 0))).ior, 1);
   EXPECT_NEAR(last(bsdf("principled", number("specular", 0) + number("spec_trans", 0.5))).ior, 1.01805,
               1e-5);  // of 0.001
@@ -347,6 +356,8 @@ TEST(Bsdf, BumpAndNormalMaps) {
     EXPECT_RGB(m.map.value, 0.5, 0.5, 1, 0);
   }
   EXPECT_SAYS(error_of(bsdf("normalmap", bsdf("diffuse"))), "needs <texture name=\"normalmap\"");
+  EXPECT_NE(last(bsdf("normalmap", texture("normals") + bsdf("diffuse")), {}, "0.6.0").map.texture, none);
+  EXPECT_SAYS(error_of(bsdf("normalmap", texture("normals") + bsdf("diffuse"))), "needs <texture");
 }
 
 TEST(Bsdf, NullAndRoughDiffuse) {
@@ -399,6 +410,14 @@ TEST(Bsdf, Polarised) {
   EXPECT_RGB(s.materials[0].transmittance.value, 0.4, 0.4, 0.4, 1e-6);
   EXPECT_TRUE(says(s.notes, "half of it passes"));
   EXPECT_FALSE(says(s.notes, "no effect"));
+  s = load_inside(bsdf("retarder", "<spectrum name='theta' value='90'/><spectrum name='delta' value='90'/>"));
+  EXPECT_EQ(s.materials[0].kind, MaterialKind::thindielectric);
+  EXPECT_EQ(s.materials[0].ior, 1);
+  EXPECT_RGB(s.materials[0].transmittance.value, 1, 1, 1, 0);
+  EXPECT_FALSE(says(s.notes, "not used"));
+  s = load_inside(bsdf("circular", "<boolean name='left_handed' value='true'/>"));
+  EXPECT_RGB(s.materials[0].transmittance.value, 0.5, 0.5, 0.5, 1e-6);
+  EXPECT_FALSE(says(s.notes, "not used"));
   s = load_inside(bsdf("polarizer", texture("transmittance")));
   ASSERT_NE(s.materials[0].transmittance.texture, none);
   EXPECT_RGB(eval(s, s.materials[0].transmittance, Surface()), 0.2, 0.2, 0.2, 1e-6);  // half of color0

@@ -218,7 +218,11 @@ TEST(Emitters, SunAndSky) {
                               "name='latitude' value='59.91'/><float name='longitude' value='10.75'/>");
   EXPECT_NEAR(-oslo.direction.y, std::sin(glm::radians(53.5f)), 0.01f);
   EXPECT_GT(-oslo.direction.z, 0.55f);
-  EXPECT_SAYS(error_of(emitter("sunsky", sun_at("0 0 -1"))), "below the horizon");
+  EXPECT_SAYS(kit::error_of([] { old(emitter("sunsky", sun_at("0 -1 0"))); }), "below the horizon");
+  const Scene night = load_inside(emitter("sunsky", sun_at("0 0 -1") + "<float name='sun_aperture' value='1'/>"));
+  EXPECT_TRUE(night.lights.empty());
+  EXPECT_TRUE(says(night.notes, "neither it nor the sky shines"));
+  EXPECT_FALSE(says(night.notes, "sun_aperture"));
   EXPECT_EQ(old(emitter("sunsky", sun_at("1 0 0"))).lights.size(), 2u);  // on the horizon
   EXPECT_SAYS(error_of(emitter("sky", high + "<float name='turbidity' value='0'/>")), "turbidity");
 }
