@@ -3,7 +3,8 @@
 # usage: animation.sh AJAR OUT [FRAMES [SECONDS [REFERENCE_SECONDS [SIZE]]]]      e.g. animation.sh build/release/ajar out/anim 0-7/24 3s 20s 96x54
 # MOTION: what moves in place of the door (door=2..60); e.g. MOTION='eye=3.36 1.34 4..2.2 1.34 3.2', a camera that goes in.
 set -e
-ajar=$1 out=$2 frames=${3:-48} seconds=${4:-5s} reference=${5:-60s} size=${6:-160x90}
+usage='usage: animation.sh AJAR OUT [FRAMES [SECONDS [REFERENCE_SECONDS [SIZE]]]]'
+ajar=${1?$usage} out=${2?$usage} frames=${3:-48} seconds=${4:-5s} reference=${5:-60s} size=${6:-160x90}
 scene=$(dirname "$0")/../scenes/ajar/ajar.xml
 animate() { "$ajar" animate "$scene" --frames "$frames" -D "${MOTION:-door=2..60}" --size "$size" -q "$@"; }
 

@@ -5,8 +5,9 @@
 #   e.g. benchmarks/bias.sh build/release/ajar out/bias 8 40 60000 15 60 "60:--merge-radius 10"
 # Each SECONDS is a run of guided-vcm; guided-bdpt takes 60. Images that are there already are not rendered again.
 set -euo pipefail
-cd "$(dirname "$0")/.."
-ajar=$1 out=$2 seeds=$3 door=$4 radiance=$5
+root=$(dirname "$0")/..
+usage="usage: bias.sh AJAR OUT SEEDS DOOR RADIANCE [SECONDS[:OPTIONS] ...]"
+ajar=${1?$usage} out=${2?$usage} seeds=${3?$usage} door=${4?$usage} radiance=${5?$usage}
 shift 5
 mkdir -p "$out"
 
@@ -18,7 +19,7 @@ images() {  # NAME SECONDS INTEGRATOR FIRST_SEED [OPTION ...]
   shift 4
   for ((k = 0; k < seeds; k++)); do
     local image=$out/$name.$k.exr
-    [[ -e $image ]] || "$ajar" render scenes/ajar/ajar.xml -D door="$door" -D radiance="$radiance" --size 320x180 --max-depth 10 \
+    [[ -e $image ]] || "$ajar" render "$root/scenes/ajar/ajar.xml" -D door="$door" -D radiance="$radiance" --size 320x180 --max-depth 10 \
       --integrator "$integrator" --seed $((first + k)) --cpu-time "${seconds}s" --threads 1 -q "$@" -o "$image"
   done
 }

@@ -2,10 +2,10 @@
 # CPU time of the same samples by two builds, in turns (A B B A) so that drift of the machine meets both alike: B over A.
 # usage: builds.sh AJAR_A AJAR_B [ROUNDS [SPP [SCENE.xml ...]]]    2 rounds of 16 spp at 160x90; all scenes that are there
 set -euo pipefail
-a=${1?usage: builds.sh AJAR_A AJAR_B [ROUNDS [SPP [SCENE.xml ...]]]} b=$2 rounds=${3:-2} spp=${4:-16}
+a=${1?usage: builds.sh AJAR_A AJAR_B [ROUNDS [SPP [SCENE.xml ...]]]} b=${2?AJAR_B} rounds=${3:-2} spp=${4:-16}
 root=$(dirname "$0")/..
 shared=${AJAR_SHARED_SCENES:-$root/../shared/scenes}
-if (($# > 4)); then shift 4; else set -- "$shared"/*/scene.xml "$root"/scenes/*/*.xml; fi
+if (($# > 4)); then shift 4; else set -- "$shared"/*/scene.xml $(grep -l '<sensor' "$root"/scenes/*/*.xml); fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 

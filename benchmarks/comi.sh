@@ -2,7 +2,7 @@
 # The tables of Comi 2019 (4.2 and 4.3) on our scenes: 32 spp, 256x256, no next-event estimation; cosine sampling
 # against fields learned in a separate pass and then frozen. Usage: comi.sh AJAR FOLDER [SEEDS]
 set -euo pipefail
-ajar=$1 folder=$2 seeds=${3:-5}
+ajar=${1?usage: comi.sh AJAR FOLDER [SEEDS]} folder=${2?FOLDER} seeds=${3:-5}
 root=$(dirname "$0")/..
 mkdir -p "$folder"
 for scene in box sunrise door; do

@@ -50,13 +50,21 @@ struct Run {
   Values last;  // the image of 2 n passes
 };
 
+// What the passes after `before` added to the first of the two sequences.
+Values since(const Film& film, const Film& before) {
+  if (before.passes == 0) return flat(film.half_sum, 1);
+  std::vector<glm::dvec3> added(film.half_sum);
+  for (size_t i = 0; i < added.size(); ++i) added[i] = sum_since(film, before, added[i], before.half_sum[i]);
+  return flat(added, 1);
+}
+
 Run run(const Scene& scene, const Accel& accel, const RenderOptions& o, const std::vector<uint32_t>& at) {
   RenderState state = start_render(scene, o);
   const size_t n = 3 * state.film.pixels();
   Run out{std::vector<Look>(at.size()), {}};
-  Values before(n);
+  Film before;  // as it was at the point before
+  Values all;   // points so far
   std::array<Values, splits> sum;
-  sum.fill(Values(n));
   std::vector<Values> at_power;
   render(scene, accel, o, state, [&](const RenderState& s) {
     const uint32_t passes = s.film.passes, point = (passes - 1) / 2;
@@ -69,16 +77,19 @@ Run run(const Scene& scene, const Accel& accel, const RenderOptions& o, const st
       look.spread.assign(spread.pixels.begin(), spread.pixels.end());
     }
     if (passes % 2 == 0) return true;  // else the single sequence has a new point
-    const Values now = flat(s.film.half_sum, 1);
+    if (point == 0) before = Film(), all = Values(n), sum.fill(all), at_power.clear();  // what was before was dropped
+    const Values now = since(s.film, before);
+    before = s.film;
     for (size_t i = 0; i < n; ++i) {
-      if (point % 2 == 0) sum[even_odd][i] += now[i] - before[i];
-      if (std::popcount(point) % 2 == 0) sum[thue_morse][i] += now[i] - before[i];
+      all[i] += now[i];
+      if (point % 2 == 0) sum[even_odd][i] += now[i];
+      if (std::popcount(point) % 2 == 0) sum[thue_morse][i] += now[i];
     }
-    before = now;
-    if (std::has_single_bit(point + 1)) at_power.push_back(now);
+    if (std::has_single_bit(point + 1)) at_power.push_back(all);
     if (old == at.end()) return true;
     Look& look = out.looks[size_t(old - at.begin())];
-    look.single = flat(s.film.half_sum, 1.0 / (point + 1));
+    look.single = all;
+    for (double& x : look.single) x /= point + 1;
     sum[first_last] = at_power[at_power.size() - 2];
     for (int k = 0; k < splits; ++k) {
       look.difference[k].resize(n);

@@ -64,7 +64,7 @@ std::vector<Visit> walk_paths(const Scene& scene, const Accel& accel, const Fiel
             make_sampler(SamplerKind::sobol, 11, side, uint64_t(y) * uint64_t(c.crop_width) + uint64_t(x), 0);
         Walk walk;
         if (side == Side::camera)
-          start_camera(scene, options, Vec2(c.crop_x + x, c.crop_y + y) + sampler.next2(), sampler.next2(), path, walk);
+          start_camera(scene, Vec2(c.crop_x + x, c.crop_y + y) + sampler.next2(), sampler.next2(), path, walk);
         else if (!start_light(scene, options, sampler, path, walk))
           continue;
         while (step(scene, accel, options, path, walk, surface) && path.n <= options.max_edges &&

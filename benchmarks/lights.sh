@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# The choice of lights: error at equal samples, and CPU time, in turns; relMSE against a reference that the learned choice
-# rendered with another seed. Last of every choice over the first one: geometric mean of error (without the worst 0.1 % of
+# The choice of lights: error at equal samples, and CPU time, in turns; relMSE against a reference that the last choice
+# rendered with another seed. At the end every choice over the first one: geometric mean of error (without the worst 0.1 % of
 # pixels) times CPU time, and the standard error of that mean. What guides does so to the end.
 # usage: benchmarks/lights.sh SCENE.xml INTEGRATOR SPP REFERENCE_TIME [AJAR [SIZE [SEEDS [CHOICES]]]]
+#   CHOICES "uniform power tree learned"; path, bdpt and what guides can learn
 set -euo pipefail
 scene=${1?usage: benchmarks/lights.sh SCENE.xml INTEGRATOR SPP REFERENCE_TIME [AJAR [SIZE [SEEDS [CHOICES]]]]}
-integrator=$2 spp=$3 reference=$4
+integrator=${2?INTEGRATOR} spp=${3?SPP} reference=${4?REFERENCE_TIME}
 ajar=${5:-"$(dirname "$0")/../build/release/ajar"}
 size=${6:-240x135}
 seeds=${7:-3}
@@ -20,7 +21,7 @@ render() {
   "$ajar" render "$scene" -o "$1" --size "$size" --integrator "$integrator" "${all[@]}" --light-choice "$2" --seed "$3" \
     "${@:4}" --threads 1 -q
 }
-render "$work/reference.exr" learned 1000 --cpu-time "$reference"
+render "$work/reference.exr" "${choices##* }" 1000 --cpu-time "$reference"
 for ((seed = 1; seed <= seeds; seed++)); do
   for choice in $choices; do
     render "$work/image.exr" "$choice" "$seed" --spp "$spp"

@@ -2,8 +2,8 @@
 # Does --noise keep its word? Renders until the target with many seeds, 48x32 pixels; the error of each against a long render.
 # usage: benchmarks/noise.sh [AJAR [SEEDS [REFERENCE_SPP]]]
 set -euo pipefail
-cd "$(dirname "$0")/.."
-ajar=${1:-build/release/ajar}
+root=$(dirname "$0")/..
+ajar=${1:-"$root/build/release/ajar"}
 seeds=${2:-12}
 long=${3:-4096}
 work=$(mktemp -d)
@@ -15,7 +15,7 @@ measure() {  # SCENE INTEGRATOR TARGET [OPTION...]
   local scene=$1 integrator=$2 target=$3
   shift 3
   local name="$scene $*"
-  local common=("scenes/$scene/$scene.xml" --size 48x32 --integrator "$integrator" --max-depth 12 -q "$@")
+  local common=("$root/scenes/$scene/$scene.xml" --size 48x32 --integrator "$integrator" --max-depth 12 -q "$@")
   [[ -e $work/$name.exr ]] || "$ajar" render "${common[@]}" -o "$work/$name.exr" --spp "$long" --seed 4711
   for ((seed = 1; seed <= seeds; seed++)); do
     "$ajar" render "${common[@]}" -o "$work/image.exr" --noise "$target" --seed $seed

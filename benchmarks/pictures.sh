@@ -4,7 +4,7 @@
 # (oiiotool, of OpenImageIO's tools, joins them).
 # Usage: pictures.sh AJAR FOLDER
 set -e
-ajar=$1 folder=$2 scene=$(dirname "$0")/../scenes/ajar/ajar.xml
+ajar=${1?usage: pictures.sh AJAR FOLDER} folder=${2?FOLDER} scene=$(dirname "$0")/../scenes/ajar/ajar.xml
 mkdir -p "$folder"
 picture() { name=$1; shift; "$ajar" render "$scene" --threads 1 --png -o "$folder/$name.exr" "$@"; }
 for integrator in bdpt guided-bdpt; do

@@ -6,10 +6,11 @@
 # column the square of the mean absolute error instead, which does not hang on how many fireflies are cut.
 # Usage: plan.sh AJAR FOLDER    THREADS: of ajar, all if empty
 set -e
-ajar=$1 folder=$2
+ajar=${1?usage: plan.sh AJAR FOLDER} folder=${2?FOLDER}
 threads=${THREADS:+--threads $THREADS}
 mkdir -p "$folder"
-"$ajar" bench "$(dirname "$0")/plan.json" -o "$folder/bench" --references "$folder/references" $threads > "$folder/bench.txt"
+"$ajar" bench "$(dirname "$0")/plan.json" -o "$folder/bench" --references "$folder/references" $threads > "$folder/bench.txt" || status=$?  # a reference may be refused
+[ -e "$folder/bench/results.json" ] || exit ${status:-1}
 python3 - "$folder" <<'TABLE'
 import json, math, sys
 ways = ('path', 'bdpt', 'guided-path', 'guided-bdpt')
@@ -30,3 +31,4 @@ for scene in json.load(open(sys.argv[1] + '/bench/results.json'))['scenes']:
           ' | '.join(f'{x:.2f}' for x in rows[-1]) + ' |')
 print('| mean | | | | | | ' + ' | '.join(f'{mean(x):.2f}' for x in zip(*rows)) + ' |')
 TABLE
+exit ${status:-0}

@@ -1,13 +1,16 @@
 #!/bin/sh
-# What a ray costs with all that hangs on it, by scene and integrator, in CPU ns: what guided renders reckon with (plain.cpp).
+# What a ray costs with all that hangs on it, by scene and integrator, in CPU ns: what guided renders reckon with (plain.cpp);
+# over what it costs path; and CPU microseconds a sample.
 # Usage: ray_cost.sh AJAR [SECONDS [SCENE.xml ...]]    one thread; 8 s each; all scenes that are there
 set -e
-ajar=$1 seconds=${2:-8}
+ajar=${1?usage: ray_cost.sh AJAR [SECONDS [SCENE.xml ...]]} seconds=${2:-8}
 root=$(dirname "$0")/..
 shared=${AJAR_SHARED_SCENES:-$root/../shared/scenes}
-[ $# -gt 2 ] && shift 2 || { set -- "$shared"/*/scene.xml "$root"/scenes/*/*.xml; }
+[ $# -gt 2 ] && shift 2 || { set -- "$shared"/*/scene.xml $(grep -l '<sensor' "$root"/scenes/*/*.xml); }
 folder=$(mktemp -d)
 trap 'rm -r "$folder"' EXIT
+echo '| scene | path | guided-path | bdpt | guided-bdpt | guided-vcm |
+|---|---|---|---|---|---|'
 for file in "$@"; do
   for integrator in path guided-path bdpt guided-bdpt guided-vcm; do
     case $integrator in guided*) all="--plan all" ;; *) all= ;; esac

@@ -3,7 +3,7 @@
 # path tracing without learning and guided by fields of each structure and rule, learned in 32 passes and then frozen.
 # Usage: rules.sh AJAR FOLDER [SEEDS]
 set -euo pipefail
-ajar=$1 folder=$2 seeds=${3:-3}
+ajar=${1?usage: rules.sh AJAR FOLDER [SEEDS]} folder=${2?FOLDER} seeds=${3:-3}
 root=$(dirname "$0")/..
 common=("$root/scenes/ajar/ajar.xml" -q -D door=40 --size 320x180 --max-depth 10)
 mkdir -p "$folder"

@@ -2,8 +2,8 @@
 # Owen-scrambled Sobol points against independent numbers: relMSE at equal samples per pixel, mean over seeds, on the box scene
 # and the door scene.      usage: benchmarks/sampler.sh [AJAR [SEEDS]]
 set -euo pipefail
-cd "$(dirname "$0")/.."
-ajar=${1:-build/release/ajar}
+root=$(dirname "$0")/..
+ajar=${1:-"$root/build/release/ajar"}
 seeds=${2:-4}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -12,7 +12,7 @@ field() { sed -E "s/.*\"$1\":([^,}]*).*/\1/"; }
 
 for scene in box ajar; do
   for integrator in path bdpt; do
-    common=(scenes/$scene/$scene.xml --size 48x32 --integrator $integrator --max-depth 12 -q)
+    common=("$root/scenes/$scene/$scene.xml" --size 48x32 --integrator $integrator --max-depth 12 -q)
     "$ajar" render "${common[@]}" -o "$work/reference.exr" --spp 4096 --seed 4711
     for spp in 16 64 256; do
       for sampler in independent sobol; do

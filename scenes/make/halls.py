@@ -3,6 +3,7 @@
 
 Usage: python3 halls.py FOLDER     spots.xml, mixed.xml and few.xml
 """
+import os
 import random
 import sys
 
@@ -72,6 +73,7 @@ def hall(spots, points, lamps, balls, degrees):
 
 if len(sys.argv) != 2:
     sys.exit(__doc__)
+os.makedirs(sys.argv[1], exist_ok=True)
 for name, what in HALLS.items():
     with open(f'{sys.argv[1]}/{name}.xml', 'w', encoding='utf-8') as file:
         file.write(hall(*what))

@@ -13,6 +13,8 @@ TOTAL = 350.0  # watts per colour channel, on average
 
 
 def main():
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
     count, seed = int(sys.argv[1]), int(sys.argv[2])
     here = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'lights')
     path = sys.argv[3] if len(sys.argv) > 3 else os.path.join(here, f'lights-{count}.xml')

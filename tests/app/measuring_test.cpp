@@ -56,6 +56,8 @@ TEST_F(Measuring, ScriptsRun) {
   EXPECT_EQ(lines(script("builds.sh") + program + program + "1 1 " + box, {"geometric mean of 1 scenes"}), 3u);
   EXPECT_EQ(lines(script("ray_cost.sh") + program + "0.05 " + box, {"| box |", " ns, 1.00"}), 1u);
   EXPECT_EQ(lines(script("lights.sh") + box + "path 1 0.1s " + program + "8x8 1", {"tree over uniform: "}), 1u);
+  EXPECT_EQ(lines(script("lights.sh") + box + "vcm 1 0.1s " + program + "8x8 1 'power tree'", {"tree over power: "}),
+            1u);
   EXPECT_EQ(lines(script("lights_number.sh") + program + "'' 10", {"10 tree "}), 1u);
 }
 

@@ -263,6 +263,24 @@ TEST(Suites, ThatComeWithAjar) {
     }
 }
 
+// They keep references in one folder, by name, size and depth: what has the same must be asked for in the same way.
+TEST(Suites, ThatComeWithAjarShareReferences) {
+  std::map<std::string, std::pair<std::string, std::string>> asked;  // by file: for what, and by which suite
+  for (const char* name : {"door", "doors", "sweep", "unguided", "curves", "easy", "merging", "plan"})
+    for (const bool quick : {false, true})
+      for (const BenchScene& scene :
+           load_suite(kit::source_path(std::string("benchmarks/") + name + ".json"), quick).scenes) {
+        std::string request = scene.file + Json(scene.defines).dump();
+        for (const ReferencePart& part : scene.parts)
+          request += options_json(part.options, false).dump() + to_json(part.budget).dump();
+        const std::string file =
+            fmt::format("{}-{}x{}-depth{}", scene.name, scene.width, scene.height, scene.max_depth.value_or(0));
+        const auto& [first, by] = asked.emplace(file, std::pair(request, name)).first->second;
+        EXPECT_EQ(request, first) << file << " of " << name << " and " << by;
+      }
+  EXPECT_GT(asked.size(), 20u);
+}
+
 // Each scene is brighter lit than the one before, as its door is nearer to closed.
 TEST(Suites, SweepClosesTheDoor) {
   const Suite suite = load_suite(kit::source_path("benchmarks/sweep.json"), false);
