@@ -77,9 +77,9 @@ bool join_light(const Scene& scene, const Fields* fields, const Subpath& camera,
   return true;
 }
 
-LightEnd light_end(std::span<const Vertex> light, double nee_ratio) {
-  const Vertex& before = light[light.size() - 2];
-  return {&light.back(), int(light.size()), before.delta, before.own, nee_ratio};
+LightEnd light_end(const Subpath& light, int s) {
+  const Vertex& before = light[s - 2];
+  return {&light[s - 1], s, before.delta, before.own, light.nee_ratio};
 }
 
 bool look_between(const Vertex& a, const Vertex& c, Between& out) {
@@ -112,7 +112,7 @@ bool join_vertices(const LightEnd& light, std::span<const Vertex> camera, const 
   return true;
 }
 
-bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int s, double nee_ratio, Candidate& out) {
+bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int s, Candidate& out) {
   const Vertex& a = light[s - 1];
   if (s == 1 ? !shows_lights(scene.camera, 1) : is_passed(scene, a.shape)) return false;
   CameraConnection k;
@@ -130,7 +130,7 @@ bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int
   }
   if (is_black(out.value)) return false;
   out.camera = {.n = 1};
-  out.nee = {nee_ratio, 1};
+  out.nee = {light.nee_ratio, 1};
   out.raster = k.raster;
   const Vec3 from = a.ng == Vec3(0) ? a.p : offset(a.p, a.ng, a.error, k.w);
   out.segment = {from, k.p - from};

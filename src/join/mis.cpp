@@ -69,10 +69,10 @@ double mis_of_camera(Heuristic h, const End& light, const End& camera, const Nex
   return fewer_light > 0 ? fewer_light / (fewer_light + fewer_camera) : fewer_camera > 0 ? 0 : 1;
 }
 
-MergeSide merge_side(Heuristic h, const End& end, double back, double v1, const SampleCounts& counts) {
+MergeSide merge_side(Heuristic h, const End& end, double back, double first, const SampleCounts& counts) {
   const double own = raise(h, ratio(1, end.own));
   const double before = std::min(raise(h, ratio(back, end.own_before)) * end.sum_before, largest_ratio * largest_ratio);
-  return {v_of_last(end, raise(h, v1), join_count(h, counts, end.seen_before)) * own, before * own};
+  return {v_of_last(end, raise(h, first), join_count(h, counts, end.seen_before)) * own, before * own};
 }
 
 double merge_weight(Heuristic h, double merge, const MergeSide& light, double light_reverse, const MergeSide& camera,

@@ -102,14 +102,14 @@ void sort_range(const Sorting& s, uint32_t range, PhotonMap& map) {
 
 }  // namespace
 
-void add_photons(Photons& photons, const Subpath& light, Heuristic h, double nee_ratio, const SampleCounts& counts) {
+void add_photons(Photons& photons, const Subpath& light, Heuristic h, const SampleCounts& counts) {
   bool straight = true;
   for (int s = 2; s <= light.n; ++s) {
     const Vertex& v = light[s - 1];
     straight = straight && (s == 2 || light[s - 2].delta);
     // Where the normals disagree nothing scatters, but light arrives there all the same, and is merged beside it.
     if (!v.guide.bsdf.has_smooth || is_black(v.beta) || !(v.merge > 0)) continue;
-    const MergeSide side = merge_side(h, end_at(light.first(s), 0, 0), v.back, nee_ratio, counts);
+    const MergeSide side = merge_side(h, end_at(light.first(s), 0, 0), v.back, light.nee_ratio, counts);
     Photon& p = photons.emplace_back();
     p.p = v.p, p.s = s;
     p.wi = v.guide.wo, p.beta = v.beta;

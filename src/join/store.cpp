@@ -61,20 +61,20 @@ Seer seer_of(const Joiner& j) {
 
 void clear(LightStore& store) { store.vertices.clear(), store.entries.clear(), store.blocks.clear(), store.paths = 0; }
 
-void add(LightStore& store, const Subpath& light, double nee_ratio) {
+void add(LightStore& store, const Subpath& light) {
   ++store.paths;
   for (int s = 2; s <= light.n; ++s) {
     const Vertex& v = light[s - 1];
     if (!connectable(v.guide)) continue;
     const float flux = flux_of(v);
     if (!(flux > 0)) continue;
-    const LightEnd end = light_end(light.first(s), nee_ratio);
+    const LightEnd end = light_end(light, s);
     store.entries.push_back({.vertex = uint32_t(store.vertices.size()),
                              .s = s,
                              .delta_before = end.delta_before,
                              .only_joined = only_joined(light.first(s)),
                              .own_before = end.own_before,
-                             .nee_ratio = nee_ratio,
+                             .nee_ratio = light.nee_ratio,
                              .region = region_of(v.guide),
                              .path = store.paths - 1,
                              .flux = flux,

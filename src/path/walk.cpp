@@ -9,8 +9,9 @@ namespace {
 double v_of_walk(const WalkOptions& options, const Subpath& subpath, const Walk& walk) {
   const int last = subpath.n - 1;
   if (subpath[last].delta || subpath[last - 1].delta) return 0;
-  const double join = subpath[last - 1].seen ? options.counts.seen : options.counts.inner;
-  return raise(options.heuristic, last == 1 ? walk.v1 : join);
+  if (last == 1)
+    return raise(options.heuristic, walk.side == Side::camera ? options.counts.light_paths : subpath.nee_ratio);
+  return raise(options.heuristic, subpath[last - 1].seen ? options.counts.seen : options.counts.inner);
 }
 
 // S of the subpath's last vertex, now that its event is known.
@@ -41,15 +42,14 @@ void set_vertex(const Walk& walk, const Surface& surface, const Vertex& before, 
 
 // What the camera's vertices have beside: whether the lens sees them, for the first the density of its pixel, and for
 // those beyond the first that is merged how much less their merges count.
-void set_camera_vertex(const Camera& camera, const SampleCounts& counts, bool first, const Vertex& before, Walk& walk,
-                       Vertex& v) {
+void set_camera_vertex(const Camera& camera, const SampleCounts& counts, bool first, const Vertex& before,
+                       const Walk& walk, Vertex& v) {
   v.seen = first || (before.seen && before.delta);
   if (first) {
     v.own = raster_factor(camera, before.p, v.p) * std::abs(glm::dot(v.ng, walk.d));
     return;
   }
-  walk.straight &= before.delta;
-  if (!walk.straight) v.merge *= float(counts.merge_inner);
+  if (!v.seen) v.merge *= float(counts.merge_inner);
 }
 
 }  // namespace
@@ -62,21 +62,19 @@ Counters& Counters::operator+=(const Counters& o) {
   return *this;
 }
 
-void start_camera(const Scene& scene, const WalkOptions& options, const Vec2& raster, const Vec2& lens,
-                  Subpath& subpath, Walk& walk) {
+void start_camera(const Scene& scene, const Vec2& raster, const Vec2& lens, Subpath& subpath, Walk& walk) {
   const CameraRay ray = generate(scene.camera, raster, lens);
-  subpath.n = 0, subpath.escape = {};
+  subpath.clear();
   Vertex& v = subpath.add();
   v.p = ray.o, v.error = 0, v.ng = Vec3(0);
   v.own = 1, v.sum = 0, v.delta = false, v.infinite = false, v.seen = false;
   v.beta = Rgb(1);
   walk = Walk{};
   walk.o = ray.o, walk.d = ray.d, walk.t_min = ray.t_min, walk.t_max = ray.t_max;
-  walk.v1 = options.counts.light_paths;
 }
 
 bool start_light(const Scene& scene, const WalkOptions& options, Sampler& sampler, Subpath& subpath, Walk& walk) {
-  subpath.n = 0, subpath.escape = {};
+  subpath.clear();
   if (scene.lights.empty()) return false;
   walk = Walk{};
   const uint32_t choice = sampler.skip();
@@ -139,8 +137,8 @@ bool step(const Scene& scene, const Accel& accel, const WalkOptions& options, Su
   if (by_camera) set_camera_vertex(scene.camera, options.counts, first, before, walk, v);
   make_guide(scene, options.fields, walk.side, surface, -walk.d, v.guide);
   if (first && !by_camera)
-    walk.v1 = ratio_of_next_event(scene, v, before.point, -walk.d, v.distance2,
-                                  {walk.start.pdf_position, walk.start.pdf_direction});
+    subpath.nee_ratio = ratio_of_next_event(scene, v, before.point, -walk.d, v.distance2,
+                                            {walk.start.pdf_position, walk.start.pdf_direction});
   return true;
 }
 

@@ -209,7 +209,7 @@ void join_all(Work& work) {
     if (connectable(light[s - 1].guide)) {
       if (Between between;
           look_between(light[s - 1], camera[t - 1], between) && is_unblocked(job, between.segment, s, t, work.scratch))
-        add_join(work, light_end(light.first(s), work.nee_ratio), between, 1);
+        add_join(work, light_end(light, s), between, 1);
       charge_join(work.scratch, s, t);
     }
 }
@@ -285,7 +285,7 @@ void trace_bdpt(const Job& job, Sample& sample, Scratch& scratch) {
   charge(scratch, &Ledger::light_ticks);
   Subpath& camera = scratch.camera;
   Walk walk;
-  start_camera(*job.scene, job.walk, sample.raster, sample.lens, camera, walk);
+  start_camera(*job.scene, sample.raster, sample.lens, camera, walk);
   Surface surface;
   First first;
   do {

@@ -65,11 +65,10 @@ void trace_light_subpath(Work& work) {
     const bool scatters_here = connectable(light[light.n - 1].guide);
     if (scatters_here && !arrived) teach_start(work, light, walk, true);
     arrived |= scatters_here;
-    work.nee_ratio = walk.v1;
     if (job.merges_alone || !scatters_here) continue;
     Candidate c;
-    const bool seen = join_camera(*job.scene, work.sample.lens, light, light.n, work.nee_ratio, c) &&
-                      add_if_visible(work, c, light.n, 1);
+    const bool seen =
+        join_camera(*job.scene, work.sample.lens, light, light.n, c) && add_if_visible(work, c, light.n, 1);
     charge_join(work.scratch, light.n, 1);
     Received received;
     if (seen) add(received, light[light.n - 1].guide, c, 1);
@@ -83,8 +82,8 @@ void trace_light_subpath(Work& work) {
 void trace_light_half(const Job& job, Sample& sample, Scratch& scratch) {
   Work work{job, sample, scratch};
   trace_light_subpath(work);
-  if (!job.merges_alone) add(scratch.traced, scratch.light, work.nee_ratio);
-  if (job.walk.merging.paths > 0) keep_photons(job, sample, work.nee_ratio, scratch);
+  if (!job.merges_alone) add(scratch.traced, scratch.light);
+  if (job.walk.merging.paths > 0) keep_photons(job, sample, scratch);
   charge(scratch, &Ledger::light_ticks);
   if (!sample.teaches) return;
   record_subpath(*job.walk.fields, *job.training, scratch.sightings, scratch.light, Side::light);

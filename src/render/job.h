@@ -114,8 +114,7 @@ struct Work {
   const Job& job;
   Sample& sample;
   Scratch& scratch;
-  double nee_ratio = 1;  ///< Walk::v1 of the light subpath
-  float pixel = -1;      ///< radiance that the pixel is expected to have; 0: fields do not know; -1: not asked yet
+  float pixel = -1;  ///< radiance that the pixel is expected to have; 0: fields do not know; -1: not asked yet
 };
 
 }  // namespace ajar

@@ -12,7 +12,7 @@ void splat_last(const Job& job, const Sample& sample, Scratch& scratch) {
   const Subpath& light = scratch.light;
   if (light.n > 1 && !connectable(light[light.n - 1].guide)) return;
   Candidate c;
-  if (join_camera(*job.scene, sample.lens, light, light.n, 1, c) && is_unblocked(job, c.segment, light.n, 1, scratch))
+  if (join_camera(*job.scene, sample.lens, light, light.n, c) && is_unblocked(job, c.segment, light.n, 1, scratch))
     add_splat(job, sample, scratch, c.raster, c.value, c.value);
   charge_join(scratch, light.n, 1);
 }

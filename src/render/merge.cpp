@@ -188,11 +188,11 @@ bool is_one_in(uint32_t n, const Sample& sample) { return hash(sample.path / n, 
 
 }  // namespace
 
-void keep_photons(const Job& job, const Sample& sample, double nee_ratio, Scratch& scratch) {
+void keep_photons(const Job& job, const Sample& sample, Scratch& scratch) {
   const WalkOptions& walk = job.walk;
   Photons& photons = scratch.halves->photons;
   const size_t first = photons.size();
-  add_photons(photons, scratch.light, walk.heuristic, nee_ratio, walk.counts);
+  add_photons(photons, scratch.light, walk.heuristic, walk.counts);
   if (walk.counts.merge_inner > 0 && is_one_in(inner_photons, sample))
     scratch.halves->few.insert(scratch.halves->few.end(), photons.begin() + ptrdiff_t(first), photons.end());
 }

@@ -15,8 +15,8 @@ struct PhotonMaps {
   PhotonMap all, few;  ///< few: of one light subpath in inner_photons
 };
 
-/// Puts the light subpath's vertices among those that the batch merges with. nee_ratio: Walk::v1.
-void keep_photons(const Job& job, const Sample& sample, double nee_ratio, Scratch& scratch);
+/// Puts the light subpath's vertices among those that the batch merges with.
+void keep_photons(const Job& job, const Sample& sample, Scratch& scratch);
 /// s >= 2: all light vertices near the last vertex of the camera subpath.
 void join_merged(const Job& job, Sample& sample, Scratch& scratch);
 

@@ -61,7 +61,7 @@ void follow(const Job& job, Sample& sample, Scratch& scratch, Walk walk, bool ga
 
 void trace_photon(const Job& job, Sample& sample, Scratch& scratch) {
   Walk walk;
-  start_camera(*job.scene, job.walk, sample.raster, sample.lens, scratch.camera, walk);
+  start_camera(*job.scene, sample.raster, sample.lens, scratch.camera, walk);
   follow(job, sample, scratch, walk, false, job.final_gather);
 }
 

@@ -21,14 +21,13 @@ struct Group {
 
 // What a light subpath whose last event but one was a delta brings to the lens: camera subpaths could not aim at it.
 // Weights are against s = 0 and s = 1.
-void join_lens(const Job& job, Sampler& sampler, double nee_ratio, uint32_t path, Scratch& scratch,
-               std::vector<Splat>& splats) {
+void join_lens(const Job& job, Sampler& sampler, uint32_t path, Scratch& scratch, std::vector<Splat>& splats) {
   const Subpath& light = scratch.light;
   if (light.n < 3 || !light[light.n - 2].delta || !connectable(light[light.n - 1].guide)) return;
   const Camera& camera = job.scene->camera;
   const Vec2 lens = camera.kind == CameraKind::thinlens ? sampler.next2() : Vec2(0);
   Candidate c;
-  if (!join_camera(*job.scene, lens, light, light.n, nee_ratio, c)) return;
+  if (!join_camera(*job.scene, lens, light, light.n, c)) return;
   ++scratch.counters.shadow_rays;
   if (!is_unblocked(job, c.segment, 1)) return;
   const SampleCounts unjoined{.light_paths = job.walk.counts.light_paths, .inner = 0, .seen = 0};
@@ -53,12 +52,12 @@ void trace_lights(const Job& job, Sampler sampler, uint32_t path, Scratch& scrat
     ++scratch.counters.light_paths;
     Surface surface;
     while (follow_light(job, sampler, scratch, walk, surface)) {
-      join_lens(job, sampler, walk.v1, path, scratch, out.splats);
+      join_lens(job, sampler, path, scratch, out.splats);
       out.may_light.push_back(can_light(*job.scene, surface, light[light.n - 1].guide));
     }
   }
   const size_t before = scratch.traced.entries.size();
-  add(scratch.traced, light, walk.v1);
+  add(scratch.traced, light);
   std::vector<LightStore::Entry>& entries = scratch.traced.entries;
   const auto is_none = [&](const LightStore::Entry& at) { return !out.may_light[size_t(at.s)] && !at.only_joined; };
   entries.erase(std::remove_if(entries.begin() + ptrdiff_t(before), entries.end(), is_none), entries.end());

@@ -189,7 +189,7 @@ void trace_vpl(const Job& job, Sample& sample, Scratch& scratch) {
   Work work{job, sample, scratch};
   Subpath& camera = scratch.camera;
   Walk walk;
-  start_camera(*job.scene, job.vpls->camera, sample.raster, sample.lens, camera, walk);
+  start_camera(*job.scene, sample.raster, sample.lens, camera, walk);
   walk_on(work, walk);
   if (camera.n != 2 || !is_clear(camera[1]) || job.walk.max_edges < 2) return;
   camera[1].beta /= float(clear_branches);

@@ -64,7 +64,7 @@ struct Room {
         while (light.n < most_edges && step(scene, accel, options, light, walk, surface) &&
                scatter(options, sampler, light, walk)) {
         }
-      add(out, light, walk.v1);
+      add(out, light);
     }
     out.entries.resize(std::min(out.entries.size(), most_entries));
     deal_blocks(out);

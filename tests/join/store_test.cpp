@@ -231,7 +231,7 @@ TEST(LightStore, NothingIsChosenFromNothing) {
   const Room room;
   const LightStore empty = room.store(0), full = room.store(64);
   LightStore black;  // subpaths that ended at once
-  add(black, {}, 1);
+  add(black, {});
   deal_blocks(black);
   EXPECT_EQ(black.paths, 1u);
   std::vector<StoreChoice> choices;
@@ -293,7 +293,7 @@ TEST(LightStore, HoldsNoBlackBacks) {
     Subpath light;
     for (uint64_t i = 0; i < 64; ++i) {
       trace_subpath(scene, accel, options, Side::light, i, 0, 3, light);
-      add(store, light, 1);
+      add(store, light);
     }
     EXPECT_EQ(store.entries.empty(), !two_sided);
   }
@@ -320,7 +320,7 @@ TEST(LightStore, JoinsAsTheSubpathItself) {
       return join_vertices(end, camera.first(camera.n), c) ? weight(Heuristic::power, c, room.options.counts) : -1;
     };
     const size_t before = store.entries.size();
-    add(store, light, walk.v1);
+    add(store, light);
     size_t entry = before;
     for (int s = 2; s <= light.n; ++s) {
       if (!connectable(light[s - 1].guide) || !(luminance(light[s - 1].beta) > 0)) continue;
@@ -328,7 +328,7 @@ TEST(LightStore, JoinsAsTheSubpathItself) {
       const LightStore::Entry& at = store.entries[entry++];
       EXPECT_EQ(at.s, s);
       counts += std::abs(at.nee_ratio - 1) > 0.1;
-      EXPECT_EQ(weigh(store.end(at)), weigh(light_end(light.first(s), walk.v1)));
+      EXPECT_EQ(weigh(store.end(at)), weigh(light_end(light, s)));
     }
     EXPECT_EQ(entry, store.entries.size());
   }

@@ -16,7 +16,7 @@ inline void trace_subpath(const Scene& scene, const Accel& accel, const WalkOpti
   Surface surface;
   if (side == Side::camera) {
     const Vec2 raster = sampler.next2() * Vec2(float(scene.camera.width), float(scene.camera.height));
-    start_camera(scene, options, raster, Vec2(0.5f), out, walk);
+    start_camera(scene, raster, Vec2(0.5f), out, walk);
   } else if (!start_light(scene, options, sampler, out, walk)) {
     return;
   }

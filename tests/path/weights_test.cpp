@@ -127,7 +127,7 @@ bool reach(const Tracer& tracer, const Traced& light, int s, const Traced& camer
   out.surfaces.resize(size_t(s - 2));
   Walk& walk = out.walk;
   walk = Walk{};
-  walk.side = Side::light, walk.v1 = light.walk.v1;
+  walk.side = Side::light;
   walk.d = glm::normalize(c.p - a.p);
   const GuideEval e = evaluate(a.guide, walk.d, Mode::importance);
   if (!(e.pdf > 0) || is_black(e.f_cos)) return false;
@@ -151,7 +151,7 @@ void compare_merges(const Tracer& tracer, const Traced& light, const Traced& cam
       if (!connectable(c.guide) || !connectable(light.path[s - 2].guide)) continue;
       if (!reach(tracer, light, s, camera, t, there)) continue;
       Photons photons;
-      add_photons(photons, there.path, h, there.walk.v1, tally.counts);
+      add_photons(photons, there.path, h, tally.counts);
       if (photons.empty() || photons.back().s != s) continue;
       const Photon& p = photons.back();
       const GuideEval e = evaluate(c.guide, p.wi, Mode::radiance);
@@ -169,7 +169,6 @@ void compare_merges(const Tracer& tracer, const Traced& light, const Traced& cam
 
 void compare_all(const Tracer& tracer, Traced& light, Traced& camera, const Vec2& lens, Sampler sampler, Tally& tally) {
   const Scene& scene = tracer.scene;
-  const double nee_ratio = light.walk.v1;
   Candidate c;
   for (int t = 2; t <= camera.path.n; ++t) {
     Subpath part = camera.path;
@@ -189,12 +188,11 @@ void compare_all(const Tracer& tracer, Traced& light, Traced& camera, const Vec2
       tally.compare(scene, c, lit(d.point, d.wi, camera, t, false), 1);
     }
     for (int s = 2; s <= light.path.n; ++s)
-      if (connectable(light.path[s - 1].guide) &&
-          join_vertices(light_end(light.path.first(s), nee_ratio), camera.path.first(t), c))
+      if (connectable(light.path[s - 1].guide) && join_vertices(light_end(light.path, s), camera.path.first(t), c))
         tally.compare(scene, c, joined(light, s, camera, t), s);
   }
   for (int s = 2; s <= light.path.n; ++s)
-    if (connectable(light.path[s - 1].guide) && join_camera(scene, lens, light.path, s, nee_ratio, c)) {
+    if (connectable(light.path[s - 1].guide) && join_camera(scene, lens, light.path, s, c)) {
       CameraConnection k;
       ASSERT_TRUE(connect(scene.camera, light.path[s - 1].p, lens, scene.filter.radius, k));
       Traced end;
@@ -234,7 +232,7 @@ void expect_oracle(const Scene& scene, int paths, const Case& which) {
     Sampler l = make_sampler(SamplerKind::independent, 1, Side::light, uint64_t(i), 0);
     const Vec2 raster = c.next2() * Vec2(float(scene.camera.width), float(scene.camera.height)), lens = c.next2();
     Traced camera, light;
-    start_camera(scene, tracer.options, raster, lens, camera.path, camera.walk);
+    start_camera(scene, raster, lens, camera.path, camera.walk);
     tracer.go_on(camera, c, true);
     if (which.fields)  // several rays to lights, as many as one likes
       for (int k = 1; k < camera.path.n; ++k) camera.path[k].next_events = uint8_t(1 + (k + i) % 5);

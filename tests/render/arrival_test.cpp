@@ -15,7 +15,7 @@ void at_arrivals(const Scene& scene, const Accel& accel, const WalkOptions& opti
     Sampler sampler = make_sampler(SamplerKind::independent, 7, Side::camera, uint64_t(i), 0);
     Walk walk;
     const Vec2 raster = sampler.next2() * Vec2(scene.camera.width, scene.camera.height);
-    start_camera(scene, options, raster, sampler.next2(), camera, walk);
+    start_camera(scene, raster, sampler.next2(), camera, walk);
     Surface surface;
     while (camera.n < 8 && step(scene, accel, options, camera, walk, surface)) {
       if (!visit(camera, walk, sampler) || !scatter(options, sampler, camera, walk)) break;

@@ -93,7 +93,7 @@ std::vector<Spot> vertices_of(const Trained& t, int most) {
     for (const Side side : {Side::camera, Side::light}) {
       Sampler sampler = make_sampler(SamplerKind::independent, 77, side, i, 0);
       if (side == Side::camera)
-        start_camera(t.scene, options, sampler.next2() * Vec2(float(t.scene.camera.width)), Vec2(0.5f), path, walk);
+        start_camera(t.scene, sampler.next2() * Vec2(float(t.scene.camera.width)), Vec2(0.5f), path, walk);
       else if (!start_light(t.scene, options, sampler, path, walk))
         continue;
       while (path.n < 6 && step(t.scene, t.accel, options, path, walk, surface)) {

@@ -165,7 +165,7 @@ TEST(Lessons, KnowWhatAMirrorPassesOn) {
     Subpath path;
     Walk walk;
     Surface surface;
-    start_camera(scene, options, sampler.next2() * 24.0f, Vec2(0.5f), path, walk);
+    start_camera(scene, sampler.next2() * 24.0f, Vec2(0.5f), path, walk);
     while (step(scene, accel, options, path, walk, surface))
       if (connectable(path[path.n - 1].guide)) {
         expected += promise(path[path.n - 1].guide, path[path.n - 1].beta).all / n;

@@ -55,10 +55,10 @@ struct LightEnd {
   int s = 0;  ///< vertices of the subpath, at least 2
   bool delta_before = false;
   double own_before = 1;  ///< Vertex::own of the vertex before
-  double nee_ratio = 1;   ///< of the subpath: Walk::v1
+  double nee_ratio = 1;   ///< Subpath::nee_ratio
 };
-/// Of a subpath of two vertices or more.
-LightEnd light_end(std::span<const Vertex> light, double nee_ratio);
+/// Of the first s >= 2 vertices of a light subpath.
+LightEnd light_end(const Subpath& light, int s);
 /// What lies between the last vertices of a light and a camera subpath.
 struct Between {
   Vec3 w{0};  ///< from the light's to the camera's, unit
@@ -76,7 +76,7 @@ inline bool join_vertices(const LightEnd& light, std::span<const Vertex> camera,
   return look_between(*light.vertex, camera.back(), between) && join_vertices(light, camera, between, out);
 }
 /// t = 1: the light subpath's vertex s - 1 >= 0 and the lens.
-bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int s, double nee_ratio, Candidate& out);
+bool join_camera(const Scene& scene, const Vec2& lens, const Subpath& light, int s, Candidate& out);
 
 /// Asks the fields for the densities that are still open.
 void complete(Candidate& c);

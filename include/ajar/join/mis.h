@@ -42,8 +42,8 @@ struct MergeSide {
   double fixed = 0, slope = 0;
 };
 /// The side whose last vertex is at the merge. other and other_before of the end are not read; back turns the density
-/// per solid angle of going back into the area density of the vertex before; v1: of the walk, or v_1 of (R2). (K6)
-MergeSide merge_side(Heuristic h, const End& end, double back, double v1, const SampleCounts& counts);
+/// per solid angle of going back into the area density of the vertex before; first: v_1 of (R2), not raised. (K6)
+MergeSide merge_side(Heuristic h, const End& end, double back, double first, const SampleCounts& counts);
 /// What `fixed` of a light side of n vertices, made for a camera's vertex that the lens does not see, is to be
 /// multiplied by where it does: one of the other strategies joins at it, or next-event estimation starts there.
 inline double seen_factor(Heuristic h, const SampleCounts& counts, int n) {

@@ -33,8 +33,8 @@ struct PhotonMap {
 
 using Photons = std::vector<Photon>;
 
-/// Adds the vertices of a light subpath at which it can be merged, with s >= 2. nee_ratio: Walk::v1.
-void add_photons(Photons& photons, const Subpath& light, Heuristic h, double nee_ratio, const SampleCounts& counts);
+/// Adds the vertices of a light subpath at which it can be merged, with s >= 2.
+void add_photons(Photons& photons, const Subpath& light, Heuristic h, const SampleCounts& counts);
 /// Puts all into the map, which forgets those that it held. Within a cell they keep their order. Throws Error
 /// from 2^31 of them on.
 void fill(PhotonMap& map, const Merging& merging, const std::vector<const Photons*>& lists);

@@ -74,8 +74,7 @@ struct StoreChoice {
 };
 
 void clear(LightStore& store);
-/// nee_ratio: Walk::v1.
-void add(LightStore& store, const Subpath& light, double nee_ratio);
+void add(LightStore& store, const Subpath& light);
 /// Makes the blocks, when all is added: each an even sample of all entries, entry i in block i % blocks, at i / blocks.
 /// For choose(). Glossy ones are the first of a block.
 void deal_blocks(LightStore& store);

@@ -47,6 +47,7 @@ struct Escape {
 struct Subpath {
   std::vector<Vertex> vertices = std::vector<Vertex>(32);
   int n = 0;
+  double nee_ratio = 1;  ///< of a light subpath from its second vertex on: ratio_of_next_event for its start (walk.h)
   Escape escape;
 
   Vertex& add() {
@@ -54,6 +55,7 @@ struct Subpath {
     return vertices[size_t(n++)];
   }
   Vertex& operator[](int i) { return vertices[size_t(i)]; }
+  void clear() { n = 0, nee_ratio = 1, escape = {}; }
   /// The first so many.
   std::span<const Vertex> first(int count) const { return {vertices.data(), size_t(count)}; }
   const Vertex& operator[](int i) const { return vertices[size_t(i)]; }

@@ -70,13 +70,10 @@ struct Walk {
   double other_before = 0;  ///< area density of a_(n-2) as the other side would generate it from a_(n-1)
   double sum = 0;           ///< S of the vertex that the ray leaves (R2); set by step, also when the ray escapes
   bool escaped = false;     ///< the ray left the scene
-  double v1 = 1;         ///< v_1 of (R2), not raised: of a camera subpath SampleCounts::light_paths, of a light subpath
-                         ///< ratio_of_next_event
-  EmissionSample start;  ///< of a light subpath
-  Rgb survival{1};       ///< throughput since the start, for roulette
-  bool sure = true;      ///< roulette could not have ended it so far
-  bool straight = true;  ///< all events so far were delta
-  float promise = 0;     ///< what the fields expected the subpath to bring when it began; 0: they do not know
+  EmissionSample start;     ///< of a light subpath
+  Rgb survival{1};          ///< throughput since the start, for roulette
+  bool sure = true;         ///< roulette could not have ended it so far
+  float promise = 0;        ///< what the fields expected the subpath to bring when it began; 0: they do not know
 };
 
 /// Numbers of a vertex's next-event estimation: takes two pairs, of which a single light uses one. False where that
@@ -140,8 +137,7 @@ inline float choose_direction(const Guide& guide, Mode mode, const WalkOptions& 
 }
 
 /// Starts at the camera: vertex 0 and the ray through a raster position.
-void start_camera(const Scene& scene, const WalkOptions& options, const Vec2& raster, const Vec2& lens,
-                  Subpath& subpath, Walk& walk);
+void start_camera(const Scene& scene, const Vec2& raster, const Vec2& lens, Subpath& subpath, Walk& walk);
 /// Starts at a light; false where there is none or it emits nothing here.
 bool start_light(const Scene& scene, const WalkOptions& options, Sampler& sampler, Subpath& subpath, Walk& walk);
 /// Traces the ray and adds the vertex that it hits; false when it escapes. surface is what was hit.
