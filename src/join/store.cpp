@@ -19,12 +19,12 @@ float flux_of(const Vertex& v) {
 
 bool is_glossy(const Vertex& v) { return gloss_of(v.guide.bsdf, v.guide.wo_local).peak > 0; }
 
-void put(LightStore::Block& b, uint32_t i, const Vertex& v, const LightStore::Entry& at, float near) {
+void put(LightStore::Block& b, uint32_t i, const Vertex& v, const LightStore::Entry& at) {
   const Vec3 n = v.guide.frame.n;
   b.x[i] = v.p.x, b.y[i] = v.p.y, b.z[i] = v.p.z;
   b.nx[i] = n.x, b.ny[i] = n.y, b.nz[i] = n.z;
   b.flux[i] = at.flux * at.counts;
-  b.near[i] = near;
+  b.near[i] = at.near;
   b.behind[i] = v.guide.bsdf.opaque ? 0.0f : -1.0f;
   b.region[i] = at.region, b.path[i] = at.path, b.s[i] = at.s;
   const Vec3 w = v.guide.wo;
@@ -78,38 +78,51 @@ void add(LightStore& store, const Subpath& light) {
                              .region = region_of(v.guide),
                              .path = store.paths - 1,
                              .flux = flux,
-                             .worth = promise(v.guide, v.beta).beyond});
+                             .worth = promise(v.guide, v.beta).beyond,
+                             .near = float(near_of(v))});
     store.vertices.push_back(v);
   }
 }
 
 namespace {
-void clear_blocks(LightStore& store) {
-  store.blocks.assign((store.entries.size() + LightStore::width - 1) / LightStore::width, {});
-}
-}  // namespace
-
-void deal_blocks(LightStore& store) {
-  clear_blocks(store);
-  const size_t n = store.blocks.size();
-  std::vector<LightStore::Entry> dealt;
-  for (size_t block = 0; block < n; ++block) {
-    dealt.clear();
-    for (size_t i = block; i < store.entries.size(); i += n) dealt.push_back(store.entries[i]);
-    std::stable_partition(dealt.begin(), dealt.end(), [&](const auto& e) { return is_glossy(store.vertex(e)); });
-    for (size_t i = 0; i < dealt.size(); ++i) {
-      const Vertex& v = store.vertex(dealt[i]);
-      store.entries[i * n + block] = dealt[i];
-      put(store.blocks[block], uint32_t(i), v, dealt[i], float(near_of(v)));
+// Blocks of the entries in turn, so many of them as count says of each.
+void fill_blocks(LightStore& store, auto count) {
+  uint32_t first = 0;
+  for (size_t block = 0; block < store.blocks.size(); first += count(block++)) {
+    LightStore::Block& b = store.blocks[block] = {};
+    b.first = first;
+    for (uint32_t i = 0; i < count(block); ++i) {
+      const LightStore::Entry& at = store.entries[first + i];
+      put(b, i, store.vertex(at), at);
     }
   }
 }
 
-void lay_blocks(LightStore& store, std::span<const float> near) {
-  clear_blocks(store);
-  for (size_t i = 0; i < store.entries.size(); ++i)
-    put(store.blocks[i / LightStore::width], uint32_t(i % LightStore::width), store.vertex(store.entries[i]),
-        store.entries[i], near[i]);
+void resize_blocks(LightStore& store) {
+  store.blocks.resize((store.entries.size() + LightStore::width - 1) / LightStore::width);
+}
+}  // namespace
+
+void deal_blocks(LightStore& store) {
+  resize_blocks(store);
+  const size_t n = store.blocks.size(), all = store.entries.size();
+  std::vector<LightStore::Entry> dealt;
+  dealt.reserve(all);
+  for (size_t block = 0; block < n; ++block) {
+    const ptrdiff_t first = ptrdiff_t(dealt.size());
+    for (size_t i = block; i < all; i += n) dealt.push_back(store.entries[i]);
+    std::stable_partition(dealt.begin() + first, dealt.end(),
+                          [&](const auto& e) { return is_glossy(store.vertex(e)); });
+  }
+  store.entries = std::move(dealt);
+  fill_blocks(store, [&](size_t block) { return uint32_t((all - block + n - 1) / n); });
+}
+
+void lay_blocks(LightStore& store) {
+  resize_blocks(store);
+  fill_blocks(store, [&](size_t block) {
+    return uint32_t(std::min<size_t>(store.entries.size() - block * LightStore::width, LightStore::width));
+  });
 }
 
 void append(LightStore& store, const LightStore& more) {
@@ -202,8 +215,8 @@ void choose(const LightStore& store, const Joiner& joiner, Sampler& sampler, Exp
       if (j + 1 < blocks && !(at < sums.back())) break;
       const uint32_t i = find(sums, values, at);
       if (!(values[i] > 0)) continue;
-      const LightStore::Entry& entry = store.entries[i * n + block];
-      out.push_back({&entry, share * entry.counts * sum / (values[i] * count)});
+      const uint32_t entry = store.blocks[block].first + i;
+      out.push_back({entry, share * store.entries[entry].counts * sum / (values[i] * count)});
     }
     before += sums.back();
   }
@@ -250,8 +263,8 @@ void choose_some(const LightStore& store, const Expectation& expected, int count
     if (!(most > 0)) continue;
     for (uint32_t i = 0; i < LightStore::width; ++i) {
       if (!(numbers[i] < chances[i])) continue;
-      const LightStore::Entry& entry = store.entries[block * LightStore::width + i];
-      out.push_back({&entry, entry.counts / (std::min(chances[i], 1.0f) * float(store.paths))});
+      const uint32_t entry = store.blocks[block].first + i;
+      out.push_back({entry, store.entries[entry].counts / (std::min(chances[i], 1.0f) * float(store.paths))});
     }
   }
 }

@@ -123,7 +123,7 @@ Joiner joiner_of(const Job& job, const Subpath& camera, float worth) {
 // Vertices that were chosen lie all over the pool: memory is asked for them at once, up to the first lobe.
 void ask_for(const LightStore& store, const std::vector<StoreChoice>& choices) {
   for (const StoreChoice& choice : choices) {
-    const char* const at = reinterpret_cast<const char*>(&store.vertex(*choice.entry));
+    const char* const at = reinterpret_cast<const char*>(&store.vertex(store.entries[choice.entry]));
     for (size_t i = 0; i < offsetof(Vertex, guide.bsdf.lobes[1]); i += 64) __builtin_prefetch(at + i);
   }
 }
@@ -147,7 +147,7 @@ void join_stored(Work& work, float worth) {
   choose(store, joiner_of(job, camera, worth), work.sample.sampler, work.scratch.expected, choices);
   ask_for(store, choices);
   for (const StoreChoice& choice : choices) {
-    const LightStore::Entry& at = *choice.entry;
+    const LightStore::Entry& at = store.entries[choice.entry];
     Between between;
     if (look_between(store.vertex(at), v, between)) {
       const bool seen = is_unblocked(job, between.segment, at.s, camera.n, work.scratch);

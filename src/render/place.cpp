@@ -162,13 +162,12 @@ void trace_vpls(const Job& job, const Film& film, uint32_t pass, std::vector<Scr
     if (vpls.rejected_at == none && g.rejected_at != Scratch::no_path) vpls.rejected_at = uint32_t(g.rejected_at);
   }
   put_in_order(*job.scene, vpls.store);
-  std::vector<float> near;
-  for (const LightStore::Entry& at : vpls.store.entries) {
+  for (LightStore::Entry& at : vpls.store.entries) {
     // No walk shares what is only joined.
     const auto per_light = [&] { return inv_pi / std::max(most_density(job, vpls.store.vertex(at)), 1e-30); };
-    near.push_back(at.only_joined ? 0 : float(per_light()));
+    at.near = at.only_joined ? 0 : float(per_light());
   }
-  lay_blocks(vpls.store, near);
+  lay_blocks(vpls.store);
 }
 
 // What was traced does not count: it is in no image, or was counted before.

@@ -78,7 +78,7 @@ void guide_way_back(const Job& job, const Surface& surface, Subpath& camera) {
   Guide& guide = camera[camera.n - 1].guide;
   Guide guided;
   make_guide(*job.scene, job.walk.fields, Side::camera, surface, guide.wo, guided);
-  guide.back = guided.back;
+  guide.back = guided.back, guide.far_cell = guided.far_cell;
 }
 
 // Camera subpaths are not guided, but ask the fields which lamps to look for (V3) and which regions see each other:
@@ -128,11 +128,11 @@ void join_vpls(Work& work) {
   const uint32_t key = uint32_t(work.sample.sampler.next1() * 0x1p32f);
   choose_some(store, scratch.expected, joins, key, scratch.choices);
   for (const StoreChoice& choice : scratch.choices) {
-    const LightStore::Entry& at = *choice.entry;
+    const LightStore::Entry& at = store.entries[choice.entry];
     Between between;
     const bool seen =
         look_between(store.vertex(at), x, between) && is_unblocked(job, between.segment, at.s, camera.n, scratch);
-    if (visibility) learn(*visibility, uint32_t(&at - store.entries.data()), seen);
+    if (visibility) learn(*visibility, choice.entry, seen);
     if (Candidate c; seen && join_vertices(store.end(at), camera.first(camera.n), between, c)) {
       complete(c);
       const double share = share_at(job, at, camera[camera.n - 1].p, c.light.other);

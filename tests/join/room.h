@@ -84,8 +84,8 @@ struct Room {
 };
 
 inline const Vertex& end_of(const Subpath& path) { return path[path.n - 1]; }
-inline size_t index_of(const LightStore& store, const StoreChoice& choice) {
-  return size_t(choice.entry - store.entries.data());
+inline const LightStore::Entry& entry_of(const LightStore& store, const StoreChoice& choice) {
+  return store.entries[choice.entry];
 }
 inline Sampler draws(uint64_t path) { return make_sampler(SamplerKind::independent, 9, Side::camera, path, 0); }
 

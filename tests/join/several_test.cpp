@@ -11,6 +11,12 @@
 namespace ajar::room {
 namespace {
 
+// Blocks of neighbours, whose entries are all as near.
+void lay(LightStore& store) {
+  for (LightStore::Entry& at : store.entries) at.near = 0.1f;
+  lay_blocks(store);
+}
+
 // The mean of the sum of weight x g over draws is the sum of g over all entries, over paths; with chances to see them
 // too, whatever these are.
 void expect_several_unbiased(const LightStore& store, const std::vector<Subpath>& cameras, const Prospect& known) {
@@ -27,7 +33,7 @@ void expect_several_unbiased(const LightStore& store, const std::vector<Subpath>
     for (int i = 0; i < n; ++i) {
       choose_some(store, sums, 5, uint32_t(hash(7, uint64_t(i))), choices);
       double x = 0;
-      for (const StoreChoice& c : choices) x += double(c.weight) * g[index_of(store, c)];
+      for (const StoreChoice& c : choices) x += double(c.weight) * g[c.entry];
       sum += x, squares += x * x, drawn += double(choices.size());
     }
     const double mean = sum / n, error = std::sqrt(std::max(squares / n - mean * mean, 0.0) / n);
@@ -44,7 +50,7 @@ TEST(LightStore, SeveralStandForAllEntries) {
   const Room room(1, true);
   LightStore store = room.store(64);
   for (size_t i = 0; i < store.entries.size(); ++i) store.entries[i].counts = float(1 + i % 3);
-  lay_blocks(store, std::vector<float>(store.entries.size(), 0.1f));
+  lay(store);
   expect_several_unbiased(store, room.cameras(12), {});
   Visibility seen;
   start(store, seen);
@@ -59,7 +65,7 @@ TEST(LightStore, SeveralStandForAllEntries) {
 TEST(LightStore, SeveralByWhatRegionsSee) {
   const Room room(1, true);
   LightStore store = room.store(64);
-  lay_blocks(store, std::vector<float>(store.entries.size(), 0.1f));
+  lay(store);
   const Views& views = room.fields.views;
   ASSERT_GT(views.regions, 3u);
   Expectation all, seen;
@@ -76,7 +82,7 @@ TEST(LightStore, SeveralByWhatRegionsSee) {
 TEST(Visibility, TellsSeenFromHidden) {
   const Room room(1, true);
   LightStore store = room.store(64);
-  lay_blocks(store, std::vector<float>(store.entries.size(), 0.1f));
+  lay(store);
   Visibility v;
   start(store, v);
   for (int k = 0; k < 20; ++k) learn(v, 3, true), learn(v, 4, false), learn(v, 40, false);
@@ -91,19 +97,19 @@ TEST(Visibility, TellsSeenFromHidden) {
 TEST(LightStore, ChoicesStay) {
   const Room room(1, true);
   LightStore store = room.store(64);
-  lay_blocks(store, std::vector<float>(store.entries.size(), 0.1f));
+  lay(store);
   const std::vector<Subpath> cameras = room.cameras(12);
   const auto choices_of = [&](uint32_t key, size_t k, float count) {
     LightStore some = store;
     some.entries[2].counts = count;
     if (count > 1) std::reverse(some.entries.begin(), some.entries.end());
-    lay_blocks(some, std::vector<float>(some.entries.size(), 0.1f));
+    lay(some);
     Expectation sums;
     expect_all(some, end_of(cameras[k]), most_edges, {}, sums);
     std::vector<StoreChoice> choices;
     choose_some(some, sums, 5, key, choices);
     std::set<std::pair<uint32_t, int>> chosen;
-    for (const StoreChoice& c : choices) chosen.insert({c.entry->path, c.entry->s});
+    for (const StoreChoice& c : choices) chosen.insert({entry_of(some, c).path, entry_of(some, c).s});
     return chosen;
   };
   size_t all = 0, other = 0;

@@ -36,7 +36,7 @@ int expect_unbiased(const LightStore& store, const std::vector<Subpath>& cameras
       double x = 0;
       for (const StoreChoice& choice : choices) {
         EXPECT_TRUE(choice.weight > 0 && choice.weight < infinity);
-        x += double(choice.weight) * g[index_of(store, choice)];
+        x += double(choice.weight) * g[choice.entry];
       }
       sum += x, squares += x * x;
     }
@@ -140,7 +140,7 @@ TEST(LightStore, StandsForEntriesOfShortSubpathsAlone) {
   for (const Subpath& camera : room.cameras(12))
     for (int i = 0; i < 200; ++i) {
       draw(store, {&end_of(camera), 2}, sampler, choices);
-      for (const StoreChoice& choice : choices) ASSERT_EQ(choice.entry->s, 2);
+      for (const StoreChoice& choice : choices) ASSERT_EQ(entry_of(store, choice).s, 2);
     }
 }
 
@@ -168,6 +168,13 @@ std::vector<double> probabilities(const LightStore& store, const Room& room, con
   const size_t n = joiner.blocks > 1 ? 1 : store.blocks.size();
   const double lights = joiner.onwards / joiner.counts, before = joiner.before / joiner.counts;
   std::vector<double> p, sums(n);
+  const auto among = [&](size_t i) {  // which of the sums
+    const auto after = [](size_t entry, const LightStore::Block& b) { return entry < b.first; };
+    return n == 1
+               ? 0
+               : size_t(std::upper_bound(store.blocks.begin(), store.blocks.end(), i, after) - store.blocks.begin()) -
+                     1;
+  };
   for (size_t i = 0; i < store.entries.size(); ++i) {
     const Vertex& a = store.vertex(store.entries[i]);
     const glm::dvec3 w = glm::dvec3(c.p) - glm::dvec3(a.p);
@@ -180,9 +187,9 @@ std::vector<double> probabilities(const LightStore& store, const Room& room, con
     if (a.guide.cell != none && c.guide.cell != none)
       sees = chance(room.fields.views, room.fields.cells[a.guide.cell].region, room.fields.cells[c.guide.cell].region);
     p.push_back(flux * g * shines_c * shines_a / (1 + found) * sees);
-    sums[i % n] += p.back();
+    sums[among(i)] += p.back();
   }
-  for (size_t i = 0; i < p.size(); ++i) p[i] /= sums[i % n] > 0 ? sums[i % n] * double(n) : 1;
+  for (size_t i = 0; i < p.size(); ++i) p[i] /= sums[among(i)] > 0 ? sums[among(i)] * double(n) : 1;
   return p;
 }
 
@@ -205,7 +212,7 @@ TEST(LightStore, ChoosesByWhatEntriesWouldBring) {
     for (int i = 0; i < n; ++i) {
       draw(store, joiner, sampler, choices);
       ASSERT_LE(choices.size(), 1u);
-      for (const StoreChoice& choice : choices) drawn[index_of(store, choice)] += 1;
+      for (const StoreChoice& choice : choices) drawn[choice.entry] += 1;
     }
     double statistic = 0, rare = 0, rare_drawn = 0;
     int dof = 0;
@@ -263,7 +270,7 @@ TEST(LightStore, NothingBehindIsChosen) {
     for (int i = 0; i < 1000; ++i) {
       draw(store, {&c, most_edges}, sampler, choices);
       for (const StoreChoice& choice : choices) {
-        const Vertex& a = store.vertex(*choice.entry);
+        const Vertex& a = store.vertex(entry_of(store, choice));
         ASSERT_TRUE(is_before(c.guide, a.p - c.p));
         ASSERT_TRUE(is_before(a.guide, c.p - a.p));
         ++chosen;

@@ -34,6 +34,16 @@ TEST_P(Agree, InEveryBlock) {
   expect_same(measured("guided-bdpt", 20, 4000), bdpt, "guided-bdpt, bdpt");
 }
 
+// What light subpaths find of a caustic, and what camera subpaths leave to them, is weighed with the fields of the side
+// that the light came from.
+TEST(AgreeClosely, CausticsThroughPaper) {
+  const auto is_it = [](const Feature& f) { return f.name == std::string("caustic_through_paper"); };
+  Scene scene = std::find_if(features().begin(), features().end(), is_it)->make();
+  set_size(scene.camera, 16, 16);
+  const kit::Estimate path = measure(scene, statistical("path", 4), {.batches = 16, .passes = 400, .seed = 2000});
+  expect_same(measure(scene, statistical("vpl", 4), {.batches = 16, .passes = 400, .seed = 6000}), path, "vpl, path");
+}
+
 INSTANTIATE_TEST_SUITE_P(Features, Agree, testing::ValuesIn(features().begin(), features().end()),
                          [](const auto& test) { return std::string(test.param.name); });
 

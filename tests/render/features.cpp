@@ -70,6 +70,20 @@ Scene caustic(const Material& material, bool point) {
   return finished(std::move(scene));
 }
 
+// What a mirror throws on a floor, of a lamp behind paper.
+Scene caustic_through_paper() {
+  Scene scene;
+  scene.filter = make_filter(FilterKind::box);
+  set_camera(scene, {1.2f, 0, 0.8f}, {0, 0, 0}, 20, 24, 24);
+  const uint32_t matt = add_diffuse(scene, Rgb(0.6f)), mirror = add_material(scene, of_kind(MaterialKind::conductor));
+  const uint32_t paper = add_material(scene, of_kind(MaterialKind::difftrans));
+  add_quad(scene, {-0.55f, -0.55f, 0}, {1.1f, 0, 0}, {0, 1.1f, 0}, matt);
+  add_quad(scene, {-1.1f, -0.5f, 1}, {0, 1, 0}, {1, 0, 0}, mirror);
+  add_quad(scene, {-1.5f, -0.3f, -0.1f}, {0.6f, 0, 0}, {0, 0.6f, 0}, paper);
+  add_area_light(scene, add_quad(scene, {-1.3f, -0.1f, -0.4f}, {0.2f, 0, 0}, {0, 0.2f, 0}, matt), Rgb(20));
+  return finished(std::move(scene));
+}
+
 Scene lit_by(LightKind kind, const Vec3& direction) {
   Scene scene = open_stage();
   Light& light = scene.lights[add_light(scene, kind, Rgb(3, 2, 1))];
@@ -382,6 +396,7 @@ const Feature all[] = {
     {"caustic_of_point", [] { return caustic(glass, true); }, "blv"},
     {"caustic_of_rough_glass",
      [] { return caustic(rough(MaterialKind::roughdielectric, Microfacet::ggx, 0.15f, 0.15f), true); }},
+    {"caustic_through_paper", caustic_through_paper, "pb", 4},
     {"bent_normals", [] { return with_globe(0.5f, Material{}); }, "pbl", -1, Heuristic::power, 4},
     {"bent_rough_glass",
      [] { return with_globe(0.3f, rough(MaterialKind::roughdielectric, Microfacet::ggx, 0.3f, 0.3f)); }},

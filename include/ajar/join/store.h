@@ -24,6 +24,7 @@ struct LightStore {
     float counts = 1;   ///< for how many of its kind it stands, where others were left out
     float flux = 0;     ///< luminance that it scatters, see Block
     float worth = 0;    ///< what the fields expect it to bring to the image, direct view aside
+    float near = 0;     ///< see Block
   };
   /// What a choice reads of so many entries, side by side.
   static constexpr uint32_t width = 32, runs = 8;
@@ -44,6 +45,7 @@ struct LightStore {
     uint32_t region[width] = {};
     uint32_t path[width] = {};
     int s[width] = {};
+    uint32_t first = 0;   ///< where its entries begin among all
     uint32_t glossy = 0;  ///< of its entries from the first on, those for which wx to alpha say something (J6)
   };
   std::vector<Vertex> vertices;
@@ -69,18 +71,17 @@ struct Joiner {
 };
 
 struct StoreChoice {
-  const LightStore::Entry* entry = nullptr;
-  float weight = 0;  ///< with which the join counts: its sum over all entries, over light subpaths
+  uint32_t entry = 0;  ///< which of the store's
+  float weight = 0;    ///< with which the join counts: its sum over all entries, over light subpaths
 };
 
 void clear(LightStore& store);
 void add(LightStore& store, const Subpath& light);
-/// Makes the blocks, when all is added: each an even sample of all entries, entry i in block i % blocks, at i / blocks.
+/// Makes the blocks, when all is added: each an even sample of all entries, which are put in the order of the blocks.
 /// For choose(). Glossy ones are the first of a block.
 void deal_blocks(LightStore& store);
-/// Makes blocks of neighbours, with what near of each entry is to be: entry i in block i / width, at i % width. For
-/// expect_all(), choose_some() and learn().
-void lay_blocks(LightStore& store, std::span<const float> near);
+/// Makes blocks of neighbours: entry i in block i / width, at i % width. For expect_all(), choose_some() and learn().
+void lay_blocks(LightStore& store);
 /// Adds all of another store, before the blocks are made.
 void append(LightStore& store, const LightStore& more);
 /// What entries of a store would bring to one camera vertex.
