@@ -108,7 +108,7 @@ void unite(const LightTree& tree, const std::vector<uint32_t>& parents, double l
   cut = std::move(out);
 }
 
-constexpr double least_gain = 0.5;  // of relative variance, for which entries are asked
+constexpr double least_gain = 16;  // of relative variance, for which entries are asked
 
 // Whether the cut's entries would gain so little over the plain choice that they are not worth the time: both second
 // moments of what comes, over the square of its mean. What an entry brings is taken to be one value or nothing.   (V7)

@@ -15,7 +15,7 @@ Film even_film() {
   Camera camera;
   camera.width = camera.crop_width = 40, camera.height = camera.crop_height = 30;
   Film film = make_film(camera, make_filter(FilterKind::box), false);
-  film.passes = passes;
+  film.passes = passes, film.weight = passes, film.half_weight = passes / 2;
   film.camera_sum.assign(film.pixels(), glm::dvec3(passes * light));
   film.half_sum.assign(film.pixels(), glm::dvec3(0.5 * passes * (light + off)));
   return film;
@@ -87,12 +87,12 @@ TEST(Balance, ByScenes) {
   const Scene open = load_scene(source_path("scenes/environment/environment.xml"), load);
   const Accel sky(open);
   double sum = 0;  // fireflies are what there is to see: some seeds have none
-  for (uint64_t seed = 1; seed <= 4; ++seed) {
+  for (uint64_t seed = 1; seed <= 8; ++seed) {
     RenderOptions o = options_of("guided-bdpt", 33);
     o.seed = seed;
     sum += double(rendered(open, sky, o).balance.goes_on);
   }
-  EXPECT_GT(sum / 4, 1.5);
+  EXPECT_GT(sum / 8, 1.2);
   Scene closed = stage(64);
   finish(closed);
   const Accel accel(closed);
