@@ -38,8 +38,13 @@ glm::dvec3 mean_around(const Film& film, const std::vector<glm::dvec3>& mean, in
 
 // The mean of the even passes less that of the odd ones.
 glm::dvec3 halves_apart(const Film& film, size_t i, const glm::dvec3& mean) {
-  const double n = film.passes, a = (film.passes + 1) / 2, b = film.passes / 2;
-  return film.half_sum[i] / a - (mean * n - film.half_sum[i]) / b;
+  const double even = (film.passes + 1) / 2, odd_weight = film.weight - film.half_weight;
+  return film.half_sum[i] / even - (film.weight * mean - film.half_weight / even * film.half_sum[i]) / odd_weight;
+}
+
+// Of the square by which the halves are apart, what is the error's. (E1)
+double share_of_halves(const Film& film) {
+  return film.half_weight * (film.weight - film.half_weight) / sqr(film.weight);
 }
 
 // Mean over the channels of the squared error over that of the true value. A sample that makes a pixel wrong makes it
@@ -47,13 +52,13 @@ glm::dvec3 halves_apart(const Film& film, size_t i, const glm::dvec3& mean) {
 // say, within what the passes leave no doubt of. epsilon: what a square is divided by at least.
 double pixel_error(const Film& film, const std::vector<glm::dvec3>& mean, double epsilon, int x, int y) {
   const size_t i = size_t(y) * film.width + x;
-  const double n = film.passes, a = (film.passes + 1) / 2, b = film.passes / 2;
   const glm::dvec3 near = mean_around(film, mean, x, y), v = variance_of_mean(film, i, mean[i]);
   const glm::dvec3 apart = halves_apart(film, i, mean[i]);
+  const double share = share_of_halves(film);
   double sum = 0;
   for (int c = 0; c < 3; ++c) {
-    const double m = mean[i][c], square = apart[c] * apart[c] * a * b / (n * n);  // (E1)
-    const double trust = m * m > 0 ? m * m / (m * m + 20 * v[c]) : 0;             // (E2)
+    const double m = mean[i][c], square = apart[c] * apart[c] * share;  // (E1)
+    const double trust = m * m > 0 ? m * m / (m * m + 20 * v[c]) : 0;   // (E2)
     const double sure = std::max(m - 2 * std::sqrt(v[c]), 0.0);
     const double dim = std::max(std::min(m * m, near[c] * near[c]), sure * sure);
     sum += square * (trust / (m * m + epsilon) + (1 - trust) / (dim + epsilon));  // (E3)
@@ -122,10 +127,10 @@ std::vector<double> relative_to(const Film& film, std::vector<double> variances)
 
 std::vector<double> half_differences(const Film& film) {
   const std::vector<glm::dvec3> mean = means(film);
-  const double n = film.passes, a = (film.passes + 1) / 2, b = film.passes / 2;
   std::vector<double> out(mean.size());
   if (film.passes < 2) return out;
-  for (size_t i = 0; i < mean.size(); ++i) out[i] = sqr(luminance(halves_apart(film, i, mean[i]))) * a * b / n;  // (E1)
+  const double share = share_of_halves(film) * film.passes;
+  for (size_t i = 0; i < mean.size(); ++i) out[i] = sqr(luminance(halves_apart(film, i, mean[i]))) * share;
   return out;
 }
 

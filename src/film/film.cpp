@@ -89,15 +89,16 @@ void drop_passes(Film& film) {
   for (auto* sums : {&film.camera_sum, &film.splat_sum, &film.half_sum, &film.square_sum})
     std::fill(sums->begin(), sums->end(), glm::dvec3(0));
   std::fill(film.brightest.begin(), film.brightest.end(), Film::Bright{});
-  film.weight = 0;
+  film.weight = film.half_weight = 0;
   film.dropped += film.passes;
   film.passes = 0;
 }
 
 void finish_pass(Film& film, double weight) {
   const float scale = 1.0f / float(film.pixels());
-  const double n = film.passes;
-  const Turn all = turn(film.weight, weight, n), half = turn(film.weight / 2, weight, n / 2);
+  const uint32_t n = film.passes;
+  const bool even = n % 2 == 0;
+  const Turn all = turn(film.weight, weight, n), half = turn(film.half_weight, weight, n / 2);
   const auto add = [](glm::dvec3& sum, const Turn& by, const glm::dvec3& x) { sum = sum * by.keep + x * by.add; };
   parallel_ranges(film.pixels(), 16384, [&](size_t from, size_t to) {
     for (size_t i = from; i < to; ++i) {
@@ -110,12 +111,13 @@ void finish_pass(Film& film, double weight) {
         film.splat[i] = Rgb(0);
         x += s;
       }
-      if (film.passes % 2 == 0) add(film.half_sum[i], half, x);
+      if (even) add(film.half_sum[i], half, x);
       add(film.square_sum[i], all, x * x);
       if (!film.brightest.empty()) note(film, i, Rgb(x), float(weight));
     }
   });
   film.weight += weight;
+  if (even) film.half_weight += weight;
   ++film.passes;
   film.chunks = 0;
 }

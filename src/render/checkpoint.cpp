@@ -10,7 +10,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind checkpoint_kind = {"AJARck27", "checkpoint", "render once with --checkpoint",
+constexpr FileKind checkpoint_kind = {"AJARck28", "checkpoint", "render once with --checkpoint",
                                       "start again without --resume"};
 
 // One list of fields for both ways.
@@ -19,7 +19,7 @@ void film_fields(Io& io, State& film) {
   io.value(film.width), io.value(film.height), io.value(film.passes), io.value(film.dropped), io.value(film.chunks);
   io.array(film.camera), io.array(film.splat);
   io.array(film.camera_sum), io.array(film.splat_sum), io.array(film.half_sum), io.array(film.square_sum);
-  io.array(film.brightest), io.value(film.weight);
+  io.array(film.brightest), io.value(film.weight), io.value(film.half_weight);
 }
 
 template <class Io, class State>
@@ -94,14 +94,18 @@ void read(Reader& r, Pyramid& pyramid) {
   }
 }
 
+// Whether so many passes may count for that.
+bool may_count_for(double weight, uint32_t passes) { return weight >= passes && weight <= Adaptive::most * passes; }
+
 bool is_sound(const Film& film, size_t pixels) {
   const size_t splats = film.splats ? pixels : 0;
   return film.pixels() == pixels && film.camera.size() == pixels && film.camera_sum.size() == pixels &&
          film.half_sum.size() == pixels && film.square_sum.size() == pixels && film.splat.size() == splats &&
          film.splat_sum.size() == splats &&
          (film.brightest.empty() || film.brightest.size() == Film::brightest_kept * pixels) &&
-         film.chunks < chunk_count(film) && film.dropped % 2 == 0 && film.weight >= film.passes &&
-         film.weight <= Adaptive::most * film.passes;
+         film.chunks < chunk_count(film) && film.dropped % 2 == 0 &&
+         may_count_for(film.half_weight, (film.passes + 1) / 2) &&
+         may_count_for(film.weight - film.half_weight, film.passes / 2);
 }
 
 // Throws Error unless the file is of this render.

@@ -65,6 +65,14 @@ TEST(ErrorEstimate, WeighsUnequalHalves) {
   EXPECT_NEAR(estimated_error(film), left / 6, 1e-12);
 }
 
+// Even passes 1 and, counting three, 6: 4.75 by four; odd ones 2 by one. Mean 4.2, mean square 22.6.
+TEST(ErrorEstimate, WeighsHalvesByWhatPassesCountFor) {
+  Film film = film_of(2, 1);
+  for (const float v : {1.f, 2.f, 6.f}) pass(film, {Rgb(v, 1, 1), Rgb(1)}, {}, v > 2 ? 3 : 1);
+  const double left = error(2.75 * 2.75 * 4 / 25, 4.2, (22.6 - 4.2 * 4.2) / 2, 1);
+  EXPECT_NEAR(estimated_error(film), left / 6, 1e-12);
+}
+
 TEST(ErrorEstimate, CountsSplatsWithTheCamera) {
   Film film = film_of(2, 1, true);  // two light subpaths: splats count half
   pass(film, grey({1, 1}), grey({2, 0}));

@@ -20,7 +20,7 @@ Film lit_film() {
   Camera camera;
   camera.width = camera.crop_width = width, camera.height = camera.crop_height = height;
   Film film = make_film(camera, make_filter(FilterKind::box), false);
-  film.passes = passes;
+  film.passes = passes, film.weight = passes, film.half_weight = passes / 2;
   film.camera_sum.assign(film.pixels(), glm::dvec3(passes * double(light)));
   film.half_sum.assign(film.pixels(), glm::dvec3(0.5 * passes * double(light)));
   return film;

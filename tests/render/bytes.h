@@ -96,6 +96,7 @@ inline void expect_same_bytes(const RenderState& a, const RenderState& b) {
   EXPECT_TRUE(same_bytes(a.film.half_sum, b.film.half_sum));
   EXPECT_TRUE(same_bytes(a.film.square_sum, b.film.square_sum));
   EXPECT_EQ(a.film.weight, b.film.weight);
+  EXPECT_EQ(a.film.half_weight, b.film.half_weight);
   EXPECT_TRUE(same_bytes(a.film.camera, b.film.camera));
   EXPECT_TRUE(same_bytes(a.film.splat, b.film.splat));
   EXPECT_TRUE(same_bytes(develop(a.film).pixels, develop(b.film).pixels));

@@ -213,7 +213,7 @@ TEST(Determinism, CheckpointsOfPassesThatCountForNothingAreErrors) {
   const RenderOptions o = options_of("bdpt", 2);
   RenderState state = rendered(scene, Accel(scene), o);
   const File file("ajar_weights");
-  for (const double weight : {0.0, 1.5, 17.0, -2.0, std::nan("")}) {
+  for (const double weight : {0.0, 1.5, 10.0, -2.0, std::nan("")}) {  // of two passes, the even one's being 1
     state.film.weight = weight;
     save_checkpoint(file.path, "key", state);
     RenderState fresh = start_render(scene, o);

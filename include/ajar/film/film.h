@@ -39,10 +39,11 @@ struct Film {
     float weight = 1;  ///< what the pass counts for
   };
   std::vector<Bright> brightest;
-  double weight = 0;     ///< what finished passes count for, all together
-  uint32_t passes = 0;   ///< finished
-  uint32_t dropped = 0;  ///< passes before those, no longer in the sums; even
-  uint32_t chunks = 0;   ///< of the pass at work that are done
+  double weight = 0;       ///< what finished passes count for, all together
+  double half_weight = 0;  ///< the same of even ones
+  uint32_t passes = 0;     ///< finished
+  uint32_t dropped = 0;    ///< passes before those, no longer in the sums; even
+  uint32_t chunks = 0;     ///< of the pass at work that are done
 
   size_t pixels() const { return size_t(width) * size_t(height); }
 };
