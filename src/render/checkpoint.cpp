@@ -95,7 +95,9 @@ void read(Reader& r, Pyramid& pyramid) {
 }
 
 // Whether so many passes may count for that.
-bool may_count_for(double weight, uint32_t passes) { return weight >= passes && weight <= Adaptive::most * passes; }
+bool may_count_for(double weight, uint32_t passes) {
+  return weight >= 0.999 * passes && weight <= 1.001 * Adaptive::most * passes;  // differences are rounded
+}
 
 bool is_sound(const Film& film, size_t pixels) {
   const size_t splats = film.splats ? pixels : 0;

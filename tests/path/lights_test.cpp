@@ -280,7 +280,7 @@ TEST(LearnedLights, TilesAreForCellsThatSeeLittle) {
     for (uint32_t i = 0; i < 40 * pieces; ++i) {
       const uint32_t place = i % pieces;
       record(v, t, entry_of(v, v.cuts[0], place), 1);
-      record(v, t, entry_of(v, v.cuts[1], place), place < pieces / 8 ? 1.0f : 0.0f);
+      record(v, t, entry_of(v, v.cuts[1], place), place < pieces / 32 ? 1.0f : 0.0f);
     }
     v = learn_lights(scene.light_tree, v, t, {}, cells);
   }
