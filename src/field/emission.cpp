@@ -99,14 +99,12 @@ float disk_pdf(const Scene& scene, const Fields* fields, uint32_t region, const 
 void guide_place(const Scene& scene, const Fields* fields, uint32_t region, Vec2 u, EmissionSample& out) {
   const float mix = disk_mix(fields, region);
   if (!(mix > 0)) return;
-  if (u.x < mix) {
-    u.x = std::min(u.x / mix, one_minus_epsilon);
+  if (take_part(u.x, mix)) {
     float over_square;
     const Vec3 at = from_square(sample(fields->disk.nodes, fields->disk.cells[region].root, u, over_square));
     const Frame f = make_frame(out.direction);
     out.point.p = scene.center + scene.radius * (f.s * at.x + f.t * at.y - out.direction);
   } else {
-    u.x = std::min((u.x - mix) / (1 - mix), one_minus_epsilon);
     place_on_disk(scene, u, out);
   }
   out.pdf_position = disk_pdf(scene, fields, region, square_of(scene, out.point.p, out.direction));
@@ -118,14 +116,12 @@ bool guide_direction(const Fields* fields, Vec2 u, EmissionSample& out) {
   const uint32_t cell = emission_cell(fields, out.point, mix);
   if (cell == none) return true;
   float pdf_field;
-  if (u.x < mix) {
-    u.x = std::min(u.x / mix, one_minus_epsilon);
+  if (take_part(u.x, mix)) {
     out.direction = sample(*fields, fields->w, cell, out.point.p, u, pdf_field);
     // Through a portal a direction may fall below the cell's horizon, where the field has no density, and still leave
     // the lamp, whose normal is another.
     if (!(pdf_field > 0) || !(glm::dot(out.direction, out.point.n) > 0)) return false;
   } else {
-    u.x = std::min((u.x - mix) / (1 - mix), one_minus_epsilon);
     out.direction = make_frame(out.point.n).to_world(to_cosine_hemisphere(u));
     pdf_field = pdf(*fields, fields->w, cell, out.point.p, out.direction);
   }

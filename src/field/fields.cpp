@@ -1,6 +1,7 @@
 #include "ajar/field/fields.h"
 
 #include "ajar/core/sampler.h"
+#include "ajar/core/warp.h"
 #include "ajar/field/portals.h"
 
 namespace ajar {
@@ -100,13 +101,11 @@ float pdf(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p
 
 Vec3 sample(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p, Vec2 u, float& density) {
   const Opening o = opening(fields, field, cell, p);
-  if (u.x < o.share) {
-    u.x = std::min(u.x / o.share, one_minus_epsilon);
+  if (o.share > 0 && take_part(u.x, o.share)) {
     const Vec3 w = sample(fields, field, o, p, u);
     density = pdf(fields, field, cell, p, w);
     return w;
   }
-  if (o.share > 0) u.x = std::min((u.x - o.share) / (1 - o.share), one_minus_epsilon);
   const Vec3 w = sample_strata(fields, field, cell, p, u, density);
   if (o.share > 0) density = (1 - o.share) * density + o.share * portal_pdf(fields, field, o, p, w);
   return w;

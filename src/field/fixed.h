@@ -9,7 +9,7 @@
 namespace ajar {
 
 inline constexpr double weight_step = 0x1p-12, value_step = 0x1p-24;
-/// Records heavier than this count as this: training data may be clamped (law 7).
+/// Records heavier than this count as this: what teaches may be clamped, images never are.
 inline constexpr double largest_weight = 64;
 
 inline int64_t to_fixed(double x, double step) {

@@ -10,7 +10,7 @@
 namespace ajar {
 namespace {
 
-// More than this times what was promised counts as this (law 7).
+// More than this times what was promised counts as this: what teaches may be clamped.
 constexpr double largest_brought = 64;
 
 struct CutNode {

@@ -1,5 +1,7 @@
 #include "ajar/field/nextevent.h"
 
+#include "ajar/core/warp.h"
+
 namespace ajar {
 namespace {
 
@@ -47,12 +49,7 @@ const LightChances& know(const LightTree& tree, const Guide& guide, LightChances
 }
 
 // Whether a light is asked at all; u becomes uniform again.
-bool is_asked(float asks, float& u) {
-  if (!(asks < 1)) return true;
-  if (u >= asks) return false;
-  u = std::min(u / asks, one_minus_epsilon);
-  return true;
-}
+bool is_asked(float asks, float& u) { return !(asks < 1) || take_part(u, asks); }
 
 uint32_t draw(const LightChances& c, float& u) {
   float at = u * c.total;
@@ -191,11 +188,6 @@ void record_next_event(const Scene& scene, const Guide& guide, LightChances& cha
     brought = promise > 0 ? pi * arrives * c.asks * over : 0;  // (V1)
   }
   record(v, training.lights, entry, brought);
-}
-
-void record_place(const Guide& guide, const Vec3& ng, Training& training, Sightings& sightings) {
-  if (guide.missing) record_missing(sightings, guide.missing, facing(ng, guide.wo));
-  if (guide.cell != none) record_visit(training.of(guide.side), guide.cell);
 }
 
 }  // namespace ajar

@@ -13,7 +13,7 @@ namespace {
 constexpr float one_plane = 1 / 8.0f;
 constexpr size_t least_cuts = 4;
 
-// Where lines through a wall are closest together, heavier ones count as this (law 7).
+// Where lines through a wall are closest together, heavier ones count as this.
 constexpr double heaviest_line = 1024;
 
 // What the axes beside a given one are.

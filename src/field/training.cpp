@@ -148,6 +148,11 @@ void record_missing(Sightings& sightings, CellKey key, const Vec3& n) {
   s.normal += glm::i64vec3(n * 4096.0f);
 }
 
+void record_place(const Place& place, const Vec3& n, Tallies& tallies, Sightings& sightings) {
+  if (place.missing) record_missing(sightings, place.missing, n);
+  if (place.cell != none) record_visit(tallies, place.cell);
+}
+
 void gather(Sightings& to, Sightings& from) {
   for (const auto& [key, s] : from) to[key].count += s.count, to[key].normal += s.normal;
   from.clear();

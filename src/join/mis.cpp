@@ -3,8 +3,7 @@
 namespace ajar {
 namespace {
 
-// What a join of two walked vertices counts for, raised. (J7)
-double join_count(Heuristic h, const SampleCounts& n, bool seen) { return raise(h, seen ? n.seen : n.inner); }
+double join_count(Heuristic h, const SampleCounts& n, bool seen) { return raise(h, ajar::join_count(n, seen)); }
 
 // v of (R2) for the strategy that connects the end's last vertex to the one before.
 double v_of_last(const End& end, double first, double inner) {

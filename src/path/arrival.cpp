@@ -12,7 +12,7 @@ float share_brought(const WalkOptions& walk, const Subpath& camera) {
   const Vertex& v = camera[camera.n - 1];
   if (v.seen || v.guide.cell == none) return 1;
   const double others = count_before(walk, camera) * double(walk.fields->w.cells[v.guide.cell].visits);
-  return float(1 / (1 + raise(walk.heuristic, ratio(others, walk.counts.inner * v.own))));
+  return weight_against(walk.heuristic, walk.counts.inner * v.own, others);
 }
 
 }  // namespace
@@ -20,10 +20,7 @@ float share_brought(const WalkOptions& walk, const Subpath& camera) {
 double count_before(const WalkOptions& walk, const Subpath& camera) {
   const Vertex &v = camera[camera.n - 1], &last = camera[camera.n - 2];
   const SampleCounts& n = walk.counts;
-  const double share = last.delta ? 0
-                                  : raise(walk.heuristic, camera.n == 2 ? n.light_paths
-                                                          : last.seen   ? n.seen
-                                                                        : n.inner);
+  const double share = last.delta ? 0 : raise(walk.heuristic, camera.n == 2 ? n.light_paths : join_count(n, last.seen));
   const double back = double(std::abs(v.guide.wo_local.z) * inv_pi) * v.back;
   const double all = camera.n == 2 ? share : extend(share, raise(walk.heuristic, ratio(back, last.own)), v.sum);
   return walk.heuristic == Heuristic::power ? std::sqrt(all) : all;

@@ -95,9 +95,8 @@ void record_emission(const Fields& fields, Training& training, Sightings& sighti
                      const Vertex& first, const Passed& passed, float brought) {
   if (lamp.infinite || lamp.point.delta_position) return;
   const Place at = find(fields.table, lamp.p, lamp.ng);
-  if (at.missing) record_missing(sightings, at.missing, lamp.ng);
+  record_place(at, lamp.ng, training.w, sightings);
   if (at.cell == none) return;
-  record_visit(training.w, at.cell);
   const Vec3 d = -first.guide.wo;
   const End to = end_of(fields, first, d, Side::light, passed);
   const float cosine = glm::dot(lamp.ng, d);
@@ -140,9 +139,7 @@ float brought_by(const Subpath& subpath, int i, Side side, float next) {
 void record_beyond(const Fields& fields, const Vertex& v, Tallies& tallies, Sightings& sightings) {
   if (!(v.guide.through > 0)) return;
   const Vec3 n = facing(v.ng, -v.guide.wo);
-  const Place at = find(fields.table, v.p, n);
-  if (at.missing) record_missing(sightings, at.missing, n);
-  if (at.cell != none) record_visit(tallies, at.cell);
+  record_place(find(fields.table, v.p, n), n, tallies, sightings);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ double v_of_walk(const WalkOptions& options, const Subpath& subpath, const Walk&
   if (subpath[last].delta || subpath[last - 1].delta) return 0;
   if (last == 1)
     return raise(options.heuristic, walk.side == Side::camera ? options.counts.light_paths : subpath.nee_ratio);
-  return raise(options.heuristic, subpath[last - 1].seen ? options.counts.seen : options.counts.inner);
+  return raise(options.heuristic, join_count(options.counts, subpath[last - 1].seen));
 }
 
 // S of the subpath's last vertex, now that its event is known.

@@ -38,13 +38,11 @@ void fill_pools(const Job& job, const Film& film, uint32_t from, Batch& batch) {
   });
 }
 
-void gather_photons(Job& job, Batch& batch) {
-  if (!(job.walk.merging.paths > 0)) return;
+void gather_photons(const Job& job, Batch& batch) {
   std::vector<const Photons*> photons, few;
   for (const Halves& h : batch.halves) photons.push_back(&h.photons), few.push_back(&h.few);
   fill(batch.photons.all, job.walk.merging, photons);
   if (job.walk.counts.merge_inner > 0) fill(batch.photons.few, job.walk.merging, few);
-  job.photons = &batch.photons;
 }
 
 }  // namespace
@@ -56,25 +54,26 @@ void start(Batch& batch, uint32_t count, bool in_halves) {
   for (uint32_t i = 0; i < count; ++i) batch.splats[i].clear(), batch.strategies[i].clear();
 }
 
-void trace_in_halves(Job& job, Film& film, uint32_t from, Batch& batch, std::vector<Scratch>& scratches) {
+void trace_in_halves(const Job& job, Film& film, uint32_t from, Batch& batch, std::vector<Scratch>& scratches) {
   const uint32_t count = uint32_t(batch.splats.size());
   const auto at_work = [&](uint32_t i) -> Scratch& { return prepare(job, batch, i, scratches[thread_slot()]); };
   batch.halves.resize(count);
   batch.pools.resize(std::max(count / chunks_per_pool, 1u));
-  job.kept = 2 * pooled_lights * double(batch.pools.size()) / count;
+  const double kept = 2 * pooled_lights * double(batch.pools.size()) / count;
   parallel_for(count, [&](uint32_t i) {
     Scratch& scratch = at_work(i);
     begin_samples(job, film, from + i, scratch);
-    trace_light_halves(job, film, from + i, scratch);
+    trace_light_halves(job, film, from + i, kept, scratch);
     batch.rejected_at[i] = scratch.rejected_at;
   });
   fill_pools(job, film, from, batch);
-  gather_photons(job, batch);
+  Job lit = job;  // with what there is to merge
+  if (job.walk.merging.paths > 0) gather_photons(job, batch), lit.photons = &batch.photons;
   const auto trace_part = [&](uint32_t i, uint32_t pool) {
     Scratch& scratch = at_work(i);
     scratch.rejected_at = batch.rejected_at[i];
     scratch.pool = &batch.pools[pool];
-    trace_camera_halves(job, film, {pool, uint32_t(batch.pools.size())}, scratch);
+    trace_camera_halves(lit, film, {pool, uint32_t(batch.pools.size())}, scratch);
     batch.rejected_at[i] = scratch.rejected_at;
   };
   const uint32_t group = chunks_of_a_group(count, scratches.size());

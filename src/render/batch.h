@@ -22,7 +22,7 @@ struct Batch {
 void start(Batch& batch, uint32_t count, bool in_halves);
 /// Light halves of all chunks, then what is joined and merged with them: their number must not depend on threads or
 /// clocks. from: the first chunk.
-void trace_in_halves(Job& job, Film& film, uint32_t from, Batch& batch, std::vector<Scratch>& scratches);
+void trace_in_halves(const Job& job, Film& film, uint32_t from, Batch& batch, std::vector<Scratch>& scratches);
 /// Chunk by chunk.
 void trace_whole(const Job& job, Film& film, uint32_t from, Batch& batch, std::vector<Scratch>& scratches);
 

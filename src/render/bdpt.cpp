@@ -50,14 +50,14 @@ void join_surface(Work& work, const Surface& surface) {
 float share_of_next_event(const Work& work, const Candidate& c) {
   if (c.light.sum_before == 0) return 1;  // cannot be hit
   const double nee = c.light.own * c.nee.ratio * c.nee.rays;
-  return float(1 / (1 + raise(work.job.walk.heuristic, ratio(c.light.other, nee))));
+  return weight_against(work.job.walk.heuristic, nee, c.light.other);
 }
 
 // What the camera subpath's last vertex makes of irradiance, relative to what its pixel is expected to be; 0: fields do
 // not know.
 float worth_of(Work& work, const Vertex& v) {
-  if (work.pixel < 0) work.pixel = expected_pixel(work.job.walk.fields, v);
-  return work.pixel > 0 ? luminance(v.beta) * scatters(v.guide) / work.pixel : 0;
+  if (!work.pixel) work.pixel = expected_pixel(work.job.walk.fields, v);
+  return *work.pixel > 0 ? luminance(v.beta) * scatters(v.guide) / *work.pixel : 0;
 }
 
 // Of such a light all rays would be one.
@@ -110,7 +110,7 @@ float left_to_joins(const Fields& fields, const Guide& guide, float worth) {
 Joiner joiner_of(const Job& job, const Subpath& camera, float worth) {
   const Vertex& v = camera[camera.n - 1];
   Joiner j{&v, job.walk.max_edges + 1 - camera.n, worth};
-  j.counts = v.seen ? job.walk.counts.seen : job.walk.counts.inner;
+  j.counts = join_count(job.walk.counts, v.seen);
   j.onwards = job.walk.counts.inner;
   j.before = count_before(job.walk, camera);
   j.joins = (v.seen ? seen_joins : inner_joins) * job.effort;
@@ -160,7 +160,7 @@ void join_stored(Work& work, float worth) {
 }
 
 // What the sample has brought its pixel so far.
-float brought(const Work& work) { return luminance(work.sample.value) * work.sample.filter; }
+float brought(const Work& work) { return luminance(work.sample.value) * work.sample.weight; }
 
 // Rays of camera subpaths and joins, so far.
 uint64_t work_of(const Counters& n) { return n.camera_rays + n.joins; }
@@ -173,7 +173,7 @@ struct First {
 };
 
 void note_first(const Work& work, First& first) {
-  if (!work.job.beyond || first.known || work.pixel < 0) return;
+  if (!work.job.beyond || first.known || !work.pixel) return;
   first = {true, brought(work), work_of(work.scratch.counters)};
 }
 

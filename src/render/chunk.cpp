@@ -10,7 +10,12 @@
 
 namespace ajar {
 
-double light_halves(size_t samples, float rate) { return std::ceil(double(samples) * double(rate)); }
+LightHalves light_halves_at(float rate) { return {size_t(std::max(1 / rate, 1.0f)), size_t(std::max(rate, 1.0f))}; }
+
+size_t light_halves(size_t samples, float rate) {
+  const auto [step, each] = light_halves_at(rate);
+  return (samples + step - 1) / step * each;
+}
 
 uint32_t traced_one_in(const Job& job, const Film& film) {
   return job.guided && job.learning ? traced_one_in(*job.learning, film) : 1;
@@ -39,9 +44,9 @@ Sample make_sample(const Job& job, const Film& film, int x, int y, uint32_t k = 
   s.teaches = k == 0 && job.learning && is_recorded(*job.learning, pixel, s.pass, recorded_one_in(*job.learning, film));
   s.sampler = pixel_numbers(job, pixel, s.pass, k);
   const Vec2 centre(float(film.x0 + x) + 0.5f, float(film.y0 + y) + 0.5f);
-  s.raster = centre + ajar::sample(film.filter, s.sampler.next2(), s.filter);
+  s.raster = centre + ajar::sample(film.filter, s.sampler.next2(), s.weight);
   if (job.scene->camera.kind == CameraKind::thinlens) s.lens = s.sampler.next2();
-  s.filter *= float(traced_one_in(job, film)) / float(s.count);
+  s.weight *= float(traced_one_in(job, film)) / float(s.count);
   return s;
 }
 
@@ -84,7 +89,7 @@ Rgb trace_pixel(const Job& job, Sample& sample, bool splat, Scratch& scratch) {
   if (!accept(sample.value, sample.path, scratch)) sample.value = Rgb(0);
   ++scratch.counters.camera_paths;
   scratch.counters.zero_paths += is_black(sample.value) && !splat && scratch.splats->size() == splats;
-  return sample.value * sample.filter;
+  return sample.value * sample.weight;
 }
 
 // Which pool a sample joins: neighbours others, and others from pass to pass, so that what a pool has too much of is
@@ -115,22 +120,22 @@ void begin_samples(const Job& job, Film& film, uint32_t chunk, Scratch& scratch)
   add_further(job, film, halves.samples);
   halves.splat_counts = float(traced_one_in(job, film));
   if (halves.pixels > 0)
-    halves.splat_counts *= float(double(halves.pixels) / light_halves(halves.pixels, job.light_rate));
+    halves.splat_counts *= float(double(halves.pixels) / double(light_halves(halves.pixels, job.light_rate)));
 }
 
-void trace_light_halves(const Job& job, const Film& film, uint32_t chunk, Scratch& scratch) {
+void trace_light_halves(const Job& job, const Film& film, uint32_t chunk, double kept, Scratch& scratch) {
   Halves& halves = *scratch.halves;
   clear(halves.store), clear(scratch.traced);
   halves.photons.clear(), halves.few.clear();
   const uint32_t recorded = job.learning ? light_recorded_one_in(*job.learning, film, job.light_rate) : 1;
-  const size_t step = size_t(std::max(1 / job.light_rate, 1.0f)), each = size_t(std::max(job.light_rate, 1.0f));
+  const auto [step, each] = light_halves_at(job.light_rate);
   for (size_t i = 0; i < halves.pixels; i += step)
     for (size_t k = 0; k < each; ++k) {
       Sample sample = halves.samples[i].sample;
       sample.path += k * film.pixels();  // numbers of its own
       halves.samples[i].splat |= trace_half(job, sample, recorded, scratch);
     }
-  subsample(halves.store, {&scratch.traced}, job.kept, number_of(job, film, chunk));
+  subsample(halves.store, {&scratch.traced}, kept, number_of(job, film, chunk));
 }
 
 void trace_camera_halves(const Job& job, Film& film, OfPool of, Scratch& scratch) {

@@ -10,12 +10,19 @@ namespace ajar {
 float number_of(const Job& job, const Film& film, uint32_t chunk);
 /// One pixel in so many is traced.
 uint32_t traced_one_in(const Job& job, const Film& film);
-/// Light halves of so many samples of a chunk.
-double light_halves(size_t samples, float rate);
+/// Of every step-th sample of a chunk so many light halves are traced.
+struct LightHalves {
+  size_t step = 1, each = 1;
+};
+/// rate: Job::light_rate.
+LightHalves light_halves_at(float rate);
+/// All of so many samples.
+size_t light_halves(size_t samples, float rate);
 /// Makes the samples of a chunk, whose pixels begin the pass black.
 void begin_samples(const Job& job, Film& film, uint32_t chunk, Scratch& scratch);
 /// The light halves of the samples that were begun, and what is stored of them.
-void trace_light_halves(const Job& job, const Film& film, uint32_t chunk, Scratch& scratch);
+/// kept: light vertices of the chunk that go into its pool, about.
+void trace_light_halves(const Job& job, const Film& film, uint32_t chunk, double kept, Scratch& scratch);
 /// Those samples of a chunk that join the light vertices of one pool.
 struct OfPool {
   uint32_t pool = 0, pools = 1;  ///< which, of how many

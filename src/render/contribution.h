@@ -63,9 +63,9 @@ inline double gain(StrategyCost& cost, const Rgb& pixel) {
 inline void add_to_pixel(Sample& sample, Scratch& scratch, int s, int t, const Rgb& raw, const Rgb& weighted) {
   if (!accept(weighted, sample.path, scratch)) return;
   sample.value += weighted;
-  const Rgb filtered = weighted * sample.filter;
+  const Rgb filtered = weighted * sample.weight;
   gain(s < 0 ? scratch.ledger->merge_at(-s, t) : scratch.ledger->at(s, t), filtered);
-  if (scratch.strategies) show(*scratch.strategies, {s, t, Vec2(sample.x, sample.y), raw * sample.filter, filtered});
+  if (scratch.strategies) show(*scratch.strategies, {s, t, Vec2(sample.x, sample.y), raw * sample.weight, filtered});
 }
 
 /// Whether light came to the subpath's last vertex by way of a delta event.
@@ -81,8 +81,7 @@ inline void gain_splat(const Job& job, const Splat& splat, Scratch& scratch) {
   const Camera& c = job.scene->camera;
   const Vec2 at = splat.raster - Vec2(c.crop_x, c.crop_y);
   const bool inside = at.x >= 0 && at.y >= 0 && at.x < float(c.crop_width) && at.y < float(c.crop_height);
-  const double pixels = double(c.crop_width) * c.crop_height;
-  const Rgb pixel = inside ? splat.value * float(1 / pixels) : Rgb(0);
+  const Rgb pixel = inside ? splat.value * float(1 / pixels_of(c)) : Rgb(0);
   const double energy = gain(scratch.ledger->at(scratch.light.n, 1), pixel);
   if (came_by_delta(scratch.light)) scratch.ledger->caustics += energy;
 }

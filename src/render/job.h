@@ -3,6 +3,8 @@
 // every integrator.
 #pragma once
 
+#include <optional>
+
 #include "ajar/accel/sight.h"
 #include "ajar/film/pyramid.h"
 #include "ajar/join/connect.h"
@@ -37,13 +39,12 @@ struct Job {
   Trace trace = nullptr;
   Trace light_half = nullptr;           ///< what is traced before, of all samples of a chunk or batch; null: nothing
   const PhotonMaps* photons = nullptr;  ///< light vertices to merge with (merge.h); null: none
-  double kept = 0;                      ///< light vertices of a chunk that go into its pool, about
   float effort = 1;                     ///< how much is spent on joins (J8)
   Adaptive* adaptive = nullptr;         ///< camera samples of each pixel in a pass; null: one
   Beyond* beyond = nullptr;             ///< per pixel, see Balance; null: not looked at
   bool merges_alone = false;            ///< nothing but merges brings light, so they need no weights
   int final_gather = 0;                 ///< of photon, see RenderOptions
-  const Vpls* vpls = nullptr;           ///< place.h
+  Vpls* vpls = nullptr;                 ///< place.h
   float light_rate = 1;                 ///< light halves for each sample of a chunk, a power of two
   bool guided = false;                  ///< fields guide subpaths, and learn from them; else lights alone are learned
   const Learning* learning = nullptr;   ///< null: nothing is learned
@@ -58,7 +59,7 @@ struct Sample {
   uint32_t number = 0, count = 1;  ///< among how many of the pixel in the pass
   uint32_t pass = 0;
   Vec2 raster{0}, lens{0};
-  float filter = 1;  ///< what the filter makes of the camera path's radiance, over their number, times that for how
+  float weight = 1;  ///< what the filter makes of the camera path's radiance, over their number, times that for how
                      ///< many samples of the pass it stands, where not all are traced
   Sampler sampler;
   bool teaches = false;  ///< what its subpaths see is recorded
@@ -114,7 +115,7 @@ struct Work {
   const Job& job;
   Sample& sample;
   Scratch& scratch;
-  float pixel = -1;  ///< radiance that the pixel is expected to have; 0: fields do not know; -1: not asked yet
+  std::optional<float> pixel;  ///< radiance that the pixel is expected to have, if asked for; 0: fields do not know
 };
 
 }  // namespace ajar

@@ -76,14 +76,14 @@ void end_training(Learning& l) {
 
 uint32_t traced_one_in(const Learning& l, const Film& film) {
   if (l.of_film) return uint32_t(std::clamp<size_t>(film.pixels() / enough_pixels, 1, 16));
-  if (l.train > 0 || l.lesson > 1 || l.fields.generation >= blind_generations) return 1;
+  if (l.train > 0 || l.lesson > 1 || knows_enough(l)) return 1;
   const YoungShares shares = young_shares(film.pixels());
   return l.fields.generation < blind_generations / 2 ? shares.first : shares.later;
 }
 
 uint32_t recorded_one_in(const Learning& l, const Film& film) {
   if (!is_young(l)) return rarity(l);
-  return l.train > 0 || l.fields.generation < blind_generations ? 1 : young_shares(film.pixels()).recorded;
+  return l.train > 0 || !knows_enough(l) ? 1 : young_shares(film.pixels()).recorded;
 }
 
 uint32_t light_recorded_one_in(const Learning& l, const Film& film, float rate) {

@@ -43,7 +43,7 @@ uint32_t equal_chunks(const Film& film, uint32_t most) {
 double light_paths_of(const Film& film, uint32_t from, uint32_t count, float rate) {
   double sum = 0;
   for (uint32_t chunk = from; chunk < from + count; ++chunk)
-    sum += light_halves(tile_bounds(film, chunk).pixels(), rate);
+    sum += double(light_halves(tile_bounds(film, chunk).pixels(), rate));
   return sum;
 }
 
@@ -86,9 +86,6 @@ bool is_due(const Film& film, uint32_t first) {
   return film.chunks == 0 && film.passes >= first && std::has_single_bit(film.passes);
 }
 
-// Whether fields know enough for the image: what passes saw before is dropped.
-bool fields_know(const RenderState& state) { return state.learning.fields.generation >= blind_generations; }
-
 // How many light subpaths are traced, and how much their joins may cost. Where camera vertices choose among those of
 // many tiles, a few are as good as many. While fields know little, all of them teach.
 void plan_light(bool merges, RenderState& state, Pass& pass) {
@@ -101,7 +98,7 @@ void plan_light(bool merges, RenderState& state, Pass& pass) {
   job.effort = state.effort;
   if (job.guided && job.light_half)
     job.walk.counts.seen = std::max(most_seen_joins * sqr(double(state.effort)), least_seen_joins);
-  job.light_rate = chosen && !pass.plain && fields_know(state) ? state.light_rate : 1;
+  job.light_rate = chosen && !pass.plain && knows_enough(state.learning) ? state.light_rate : 1;
   job.walk.counts.light_paths = film.splats ? light_paths_of(film, 0, chunk_count(film), job.light_rate) : 0;
 }
 
@@ -109,7 +106,7 @@ void plan_light(bool merges, RenderState& state, Pass& pass) {
 void balance_pass(RenderState& state, Pass& pass) {
   const Film& film = state.film;
   Balance& balance = state.balance;
-  const bool told = pass.job.guided && !pass.job.vpls && !pass.plain && fields_know(state);
+  const bool told = pass.job.guided && !pass.job.vpls && !pass.plain && knows_enough(state.learning);
   if (told && is_due(film, 4)) rebalance(film, balance);
   if (told && balance.found.empty()) balance.found.resize(film.pixels());
   pass.job.walk.goes_on = balance.goes_on;
@@ -120,7 +117,7 @@ void balance_pass(RenderState& state, Pass& pass) {
 void adapt_pass(const RenderOptions& options, RenderState& state, Pass& pass) {
   const Film& film = state.film;
   Adaptive& adaptive = state.adaptive;
-  if (!pass.job.guided || options.even || in_training(state.learning) || !fields_know(state)) return;
+  if (!pass.job.guided || options.even || in_training(state.learning) || !knows_enough(state.learning)) return;
   pass.job.adaptive = &adaptive;
   if (adaptive.spread.empty()) {
     adaptive.spread.resize(film.pixels());

@@ -6,9 +6,6 @@
 namespace ajar {
 namespace {
 
-// Weight of a ray that found light with density own, against next-event estimation of density other.
-float hit_weight(Heuristic h, double own, double other) { return float(1 / (1 + raise(h, ratio(other, own)))); }
-
 // Light that the path ran into: s = 0.
 Rgb hit_light(const Scene& scene, Heuristic h, const Guide& before, const Surface& at, const Vec3& d, double pdf,
               bool alone) {
@@ -16,7 +13,7 @@ Rgb hit_light(const Scene& scene, Heuristic h, const Guide& before, const Surfac
   if (point.light == none) return Rgb(0);
   const Rgb radiance = emitted(scene, at, -d);
   if (alone || is_black(radiance)) return radiance;
-  return radiance * hit_weight(h, pdf, pdf_next_event(scene, before, point, d));
+  return radiance * weight_against(h, pdf, pdf_next_event(scene, before, point, d));
 }
 
 Rgb hit_sky(const Scene& scene, Heuristic h, const Guide& before, const Vec3& d, double pdf, bool alone) {
@@ -25,7 +22,7 @@ Rgb hit_sky(const Scene& scene, Heuristic h, const Guide& before, const Vec3& d,
     const Rgb radiance = environment(scene, light, d);
     if (is_black(radiance)) continue;
     const double other = alone ? 0 : pdf_next_event(scene, before, light_point(scene, light, d), d);
-    sum += radiance * hit_weight(h, pdf, other);
+    sum += radiance * weight_against(h, pdf, other);
   }
   return sum;
 }
@@ -55,7 +52,7 @@ Rgb direct(const Job& job, const Guide& guide, const Surface& at, Sampler& sampl
   if (!free) return Rgb(0);
   const LightPoint& l = d.point;
   const bool alone = l.delta_position || l.delta_direction;
-  const float w = alone ? 1 : hit_weight(job.walk.heuristic, d.pdf, e.pdf);
+  const float w = alone ? 1 : weight_against(job.walk.heuristic, d.pdf, e.pdf);
   return e.f_cos * d.radiance * (w / d.pdf);
 }
 

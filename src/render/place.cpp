@@ -32,8 +32,7 @@ void join_lens(const Job& job, Sampler& sampler, uint32_t path, Scratch& scratch
   if (!is_unblocked(job, c.segment, 1)) return;
   const SampleCounts unjoined{.light_paths = job.walk.counts.light_paths, .inner = 0, .seen = 0};
   // The film takes as many light subpaths as it has pixels.
-  const double pixels = double(camera.crop_width) * camera.crop_height;
-  c.value *= float(weight(job.walk.heuristic, c, unjoined) * pixels / unjoined.light_paths);
+  c.value *= float(weight(job.walk.heuristic, c, unjoined) * pixels_of(camera) / unjoined.light_paths);
   if (accept(c.value, path, scratch)) splats.push_back({c.raster, c.value});
 }
 
@@ -127,7 +126,8 @@ double most_density(const Job& job, const Vertex& v) {
 }
 
 // Finds out from light subpaths that are in no image how much a light must bring to be kept.
-void measure_lights(const Job& job, std::vector<Scratch>& scratches, Vpls& vpls) {
+void measure_lights(const Job& job, std::vector<Scratch>& scratches) {
+  Vpls& vpls = *job.vpls;
   constexpr uint64_t stream = 0x70696c6f74;
   const std::vector<Group> groups = trace_groups(job, stream, 0, scratches);
   double worth = 0, flux = 0;
@@ -148,7 +148,8 @@ uint32_t chunk_of_splat(const Film& film, uint64_t key, size_t number) {
 }
 
 // Traces the light subpaths of a pass and keeps its lights.
-void trace_vpls(const Job& job, const Film& film, uint32_t pass, std::vector<Scratch>& scratches, Vpls& vpls) {
+void trace_vpls(const Job& job, const Film& film, uint32_t pass, std::vector<Scratch>& scratches) {
+  Vpls& vpls = *job.vpls;
   constexpr uint64_t stream = 0x76706c;
   const std::vector<Group> groups = trace_groups(job, stream, pass, scratches);
   clear(vpls.store);
@@ -215,16 +216,17 @@ double density_of_lights(const Job& job, const Vec3& p, const Vec3& ng, const Ve
   return std::min(traced, arrives * std::max(brings, 0.0) / v.least);
 }
 
-void place_vpls(const Job& job, const Film& film, std::vector<Scratch>& scratches, Vpls& vpls) {
+void place_vpls(const Job& job, const Film& film, std::vector<Scratch>& scratches) {
+  Vpls& vpls = *job.vpls;
   vpls.camera = job.walk;
   vpls.camera.fields = nullptr;
   const uint32_t pass = film.dropped + film.passes;
-  if (vpls.pass == Vpls{}.pass && job.guided) {
-    measure_lights(job, scratches, vpls);
+  if (!vpls.pass && job.guided) {
+    measure_lights(job, scratches);
     forget_counts(scratches);
   }
   if (vpls.pass != pass) {
-    trace_vpls(job, film, pass, scratches, vpls);
+    trace_vpls(job, film, pass, scratches);
     if (film.chunks > 0) forget_counts(scratches), vpls.rejected_at = none;  // a pass that is gone on with
   }
   vpls.pass = pass;

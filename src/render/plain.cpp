@@ -220,7 +220,7 @@ bool merges_still(const RenderOptions& options, const Plain& plain) {
 }
 
 void try_plain(const Job& job, const RenderOptions& options, std::vector<Scratch>& scratches, RenderState& state) {
-  if (!may_leave_out(options) || state.learning.fields.generation < blind_generations) return;
+  if (!may_leave_out(options) || !knows_enough(state.learning)) return;
   Plain& plain = state.plain;
   const bool merges = merges_still(options, plain);
   const Film& film = state.film;

@@ -26,9 +26,6 @@ constexpr uint32_t pilot_lessons = 8;  // about, in time of passes
 // Of quotients beyond it a few bright pixels decide how large they are, if not that they are.
 constexpr double most_trusted = 10;
 
-// Of the crop window, which alone is rendered.
-double pixels_of(const Camera& camera) { return double(camera.crop_width) * camera.crop_height; }
-
 // CPU seconds; infinite where a target for the noise alone ends the render.
 double budget_of(const RenderOptions& o, double pixels) {
   const double threads = o.threads > 0 ? o.threads : processor_count();

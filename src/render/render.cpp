@@ -64,7 +64,7 @@ void trace(Pass& pass, Film& film, Workshop& shop) {
   const uint32_t from = film.chunks;
   start(shop.batch, pass.chunks, pass.job.light_half != nullptr);
   if (pass.job.vpls) {
-    place_vpls(pass.job, film, shop.scratches, shop.vpls);
+    place_vpls(pass.job, film, shop.scratches);
     std::copy_n(shop.vpls.splats.begin() + from, pass.chunks, shop.batch.splats.begin());
   }
   if (pass.job.light_half)
@@ -85,7 +85,7 @@ void note_rejected(RenderStats& stats, const std::vector<uint64_t>& pixels, cons
 // The same of what is traced for all pixels, once.
 void note_rejected(RenderStats& stats, Vpls& vpls, uint64_t seed) {
   if (vpls.rejected_at == none || stats.replay.size() >= 5) return;
-  stats.replay.push_back(fmt::format("light subpath {} pass {} seed {}", vpls.rejected_at, vpls.pass, seed));
+  stats.replay.push_back(fmt::format("light subpath {} pass {} seed {}", vpls.rejected_at, *vpls.pass, seed));
   vpls.rejected_at = none;
 }
 

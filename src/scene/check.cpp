@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "ajar/core/error.h"
+#include "ajar/scene/geometry.h"
 #include "bounds.h"
 
 namespace ajar {
@@ -160,20 +161,12 @@ bool all_finite(const Mat4& m) {
   return is_finite(Vec3(m[0])) && is_finite(Vec3(m[1])) && is_finite(Vec3(m[2])) && is_finite(Vec3(m[3]));
 }
 
-// Within a hundredth.
-bool is_round(const Mat4& m) {
-  const glm::dvec3 x(m[0]), y(m[1]), z(m[2]);
-  const double size = glm::dot(x, x), slack = 0.02 * size;
-  return std::abs(glm::dot(y, y) - size) < slack && std::abs(glm::dot(z, z) - size) < slack &&
-         std::abs(glm::dot(x, y)) < slack && std::abs(glm::dot(y, z)) < slack && std::abs(glm::dot(z, x)) < slack;
-}
-
 void check_shape(const Scene& scene, uint32_t id) {
   const Shape& s = scene.shapes[id];
   const Named part{"shape", id};
   if (!all_finite(s.to_world) || !all_finite(s.to_object))
     refuse(part, "its to_world cannot be inverted; give it finite numbers, and an extent each way");
-  if (s.kind == ShapeKind::sphere && !is_round(s.to_world))
+  if (s.kind == ShapeKind::sphere && !is_similarity(glm::dmat4(s.to_world), 0.01))
     refuse(part, "its to_world stretches the sphere; take add_globe and transform that, or an instance");
   if (s.kind == ShapeKind::mesh) check_index(part, "mesh", s.mesh, scene.meshes, "meshes");
   check_index(part, "material", s.material, scene.materials, "materials");

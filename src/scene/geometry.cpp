@@ -343,4 +343,11 @@ float triangle_area(const Mesh& mesh, uint32_t triangle) {
   return twice > 1e-30 && twice < 1e38 ? float(twice / 2) : 0;
 }
 
+bool is_similarity(const glm::dmat4& m, double tolerance) {
+  const glm::dvec3 x(m[0]), y(m[1]), z(m[2]);
+  const double size = glm::dot(x, x), slack = 2 * tolerance * size;
+  return std::abs(glm::dot(y, y) - size) < slack && std::abs(glm::dot(z, z) - size) < slack &&
+         std::abs(glm::dot(x, y)) < slack && std::abs(glm::dot(y, z)) < slack && std::abs(glm::dot(z, x)) < slack;
+}
+
 }  // namespace ajar

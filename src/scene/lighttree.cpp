@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ajar/core/warp.h"
 #include "lightpieces.h"
 
 namespace ajar {
@@ -333,13 +334,10 @@ bool choose(const LightTree& tree, uint32_t node, const Receiver& at, float& u, 
     }
     const float left = left_share(tree, n, at);
     if (left < 0) return false;
-    if (u < left) {
+    if (take_part(u, left))
       node = n.left, pdf *= left;
-      u = std::min(u / left, one_minus_epsilon);
-    } else {
+    else
       node = n.left + 1, pdf *= 1 - left;
-      u = left < 1 ? std::min((u - left) / (1 - left), one_minus_epsilon) : u;
-    }
     if (!(pdf > 0)) return false;
   }
 }

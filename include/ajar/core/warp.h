@@ -6,6 +6,16 @@
 
 namespace ajar {
 
+/// True with probability p; stretches u over the part that was taken, so that it is uniform again.
+inline bool take_part(float& u, float p) {
+  if (u < p) {
+    u = std::min(u / p, one_minus_epsilon);
+    return true;
+  }
+  u = std::min((u - p) / (1 - p), one_minus_epsilon);
+  return false;
+}
+
 /// Unit disk, concentric (Shirley and Chiu 1997); density 1/pi per area.
 inline Vec2 to_disk(const Vec2& u) {
   const float a = 2 * u.x - 1, b = 2 * u.y - 1;

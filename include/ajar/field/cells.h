@@ -79,7 +79,7 @@ struct Place {
 CellTable make_cell_table(const Vec3& center, float radius, float width = 0);
 /// area: of the surfaces that the probes stand for [m^2].
 CellTable make_probe_table(std::vector<Probe> probes, double area);
-/// Which of 27 ranges of directions a normal is in; no cell holds two of them.
+/// Which of 26 ranges of directions a unit normal is in, from 0 to 26 without 13; no cell holds two of them.
 uint32_t normal_bin(const Vec3& n);
 /// Number of the cube of level 0 around a point; past the last one where there is none.
 size_t top_cube(const CellTable& table, const Vec3& p);

@@ -38,7 +38,7 @@ struct Field {
   std::vector<UFloat16> mean;      ///< 16 per node: what the stratum's field is, without what is direct
   std::vector<UFloat16> weight;    ///< 16 per node: how much evidence stands behind it, in records of typical weight
   std::vector<FieldCell> portals;  ///< two for each portal, of what goes down and up its axis: strata of its disk
-  double unit = 1;                 ///< a typical value, from the scene's power and size
+  double unit = 1;  ///< a typical value: of Q radiance, of W pixels' importance per area and solid angle [1/(m^2 sr)]
 };
 
 struct Cell {

@@ -1,5 +1,5 @@
 // Enters: fields and what passes recorded through them.
-// Leaves: the next fields. The one place where fields change (law 1).
+// Leaves: the next fields. The one place where fields change.
 #pragma once
 
 #include "ajar/field/training.h"

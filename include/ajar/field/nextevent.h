@@ -42,7 +42,5 @@ double pdf_next_event(const Scene& scene, const Guide& guide, const LightPoint& 
 /// something was in the way. Nothing is recorded where no light was asked.
 void record_next_event(const Scene& scene, const Guide& guide, LightChances& chances, Training& training,
                        const LightPoint& point, float arrives);
-/// The vertex was here: cells come to be, and divide, where there are many. ng: its geometric normal.
-void record_place(const Guide& guide, const Vec3& ng, Training& training, Sightings& sightings);
 
 }  // namespace ajar

@@ -80,6 +80,9 @@ void record_direct(const Field& field, Tallies& tallies, uint32_t cell, float va
 void record_visit(Tallies& tallies, uint32_t cell);
 /// A vertex with this normal lay where there is no cell yet; key: of the one that ought to be there.
 void record_missing(Sightings& sightings, CellKey key, const Vec3& n);
+/// A vertex with this normal lay here, where there may or may not be a cell: cells come to be, and divide, where there
+/// are many.
+void record_place(const Place& place, const Vec3& n, Tallies& tallies, Sightings& sightings);
 /// Adds what one thread saw to what all saw, and empties it.
 void gather(Sightings& to, Sightings& from);
 

@@ -31,6 +31,14 @@ struct SampleCounts {
   double merge_inner = 1;  ///< merges beyond the first vertex at which a camera subpath is merged (K3)
 };
 
+/// What joins of two walked vertices count for; seen: whether the lens sees the camera's. (J7)
+inline double join_count(const SampleCounts& n, bool seen) { return seen ? n.seen : n.inner; }
+
+/// Weight of a strategy of this density against one other that finds the same path, of a sample of each.
+inline float weight_against(Heuristic h, double own, double other) {
+  return float(1 / (1 + raise(h, ratio(other, own))));
+}
+
 /// Prefix sum over the strategies that cut a subpath a_0 a_1 .. at or before vertex i (docs/method.md, R2):
 ///   S_i = v_i + r_(i-1) S_(i-1)
 /// with r_j = (density of a_j from the other side / from its own), raised, and v_i what the strategy counts for

@@ -1,5 +1,5 @@
 // Enters: passes of a guided integrator.
-// Leaves: the fields that the next pass reads. The one place where what was recorded flows back (law 1).
+// Leaves: the fields that the next pass reads. The one place where what was recorded flows back.
 #pragma once
 
 #include "ajar/field/learn.h"
@@ -38,6 +38,8 @@ StoredFields stored_fields(const Scene& scene, const Learning& learning, uint32_
 inline uint32_t dropped_passes(const Learning& learning, const Film& film) { return film.dropped - learning.first; }
 /// Whether passes only train the fields so far (LearnOptions::train): they do not count.
 bool in_training(const Learning& learning);
+/// Whether fields know enough for the image: what passes saw before is dropped.
+inline bool knows_enough(const Learning& learning) { return learning.fields.generation >= blind_generations; }
 /// Has training end with the pair of passes at work, but not before blind_generations of them.
 void end_training(Learning& learning);
 /// One pixel in so many is traced in the pass at hand. What blind passes find is not for the image, and the first

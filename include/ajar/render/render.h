@@ -24,7 +24,7 @@ struct RenderStats {
   Counters counters;
   Ledger ledger;  ///< of what is in the image: without dropped passes
   TimedTicks ticks;
-  uint64_t rejected = 0;                            ///< values dropped for not being finite and non-negative (law 6)
+  uint64_t rejected = 0;                            ///< values dropped for not being finite and non-negative
   std::vector<std::string> replay;                  ///< what replays the first of them
   double seconds = 0, cpu_seconds = 0;              ///< of tracing, merging and learning; sums over resumed parts
   double learn_seconds = 0, learn_cpu_seconds = 0;  ///< of these, learning between passes

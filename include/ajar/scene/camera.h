@@ -31,6 +31,8 @@ struct Camera {
   Lamps lamps = Lamps::seen;
 };
 
+/// Of the crop window, which alone is rendered.
+inline double pixels_of(const Camera& camera) { return double(camera.crop_width) * camera.crop_height; }
 /// Whether light that comes to the lens by so many edges from where it was emitted is in the image.
 inline bool shows_lights(const Camera& c, int edges) { return edges > 1 || c.lamps == Lamps::seen; }
 

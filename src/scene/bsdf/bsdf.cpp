@@ -85,11 +85,11 @@ BsdfEval eval_sum(const Bsdf& bsdf, const Vec3& wo, const Vec3& wi, Mode mode) {
 
 // Several lobes, or one beside a passage: the direction comes from one, value and densities from all.
 bool sample_sum(const Bsdf& bsdf, const Vec3& wo, float u_lobe, const Vec2& u, Mode mode, BsdfSample& out) {
-  if (take(u_lobe, bsdf.pass)) return set_delta(out, -wo, Rgb((1 - bsdf.opacity) / bsdf.pass), bsdf.pass);
+  if (take_part(u_lobe, bsdf.pass)) return set_delta(out, -wo, Rgb((1 - bsdf.opacity) / bsdf.pass), bsdf.pass);
   float left = 1 - bsdf.pass;
   for (int i = 0; i < bsdf.count; ++i) {
     const float p = bsdf.choice[i];
-    if (i + 1 < bsdf.count && !take(u_lobe, std::min(p / left, 1.0f))) {
+    if (i + 1 < bsdf.count && !take_part(u_lobe, std::min(p / left, 1.0f))) {
       left = std::max(left - p, 1e-30f);
       continue;
     }

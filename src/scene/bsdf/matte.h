@@ -89,7 +89,7 @@ inline BsdfEval eval(const Ward& w, const Vec3& wo, const Vec3& wi, Mode) {
 inline bool sample(const Ward& w, const Vec3& wo, float u_lobe, const Vec2& u, Mode mode, BsdfSample& out) {
   if (!(wo.z > 0)) return false;
   Vec3 wi;
-  if (take(u_lobe, w.share)) {
+  if (take_part(u_lobe, w.share)) {
     const float slope = std::sqrt(-std::log1p(-u.x));
     const Vec2 c = circle(u.y);
     wi = mirrored(wo, glm::normalize(Vec3(w.facets.alpha_u * slope * c.x, w.facets.alpha_v * slope * c.y, 1)));

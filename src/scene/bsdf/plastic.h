@@ -25,7 +25,7 @@ inline BsdfEval eval(const Plastic& p, const Vec3& wo, const Vec3& wi, Mode) {
 inline bool sample(const Plastic& p, const Vec3& wo, float u_lobe, const Vec2& u, Mode mode, BsdfSample& out) {
   if (!(wo.z > 0)) return false;
   const float reflected = fresnel_dielectric(wo.z, p.ior), ps = specular_probability(p.share, reflected);
-  if (take(u_lobe, ps)) return set_delta(out, mirrored(wo), p.specular * (reflected / ps), ps);
+  if (take_part(u_lobe, ps)) return set_delta(out, mirrored(wo), p.specular * (reflected / ps), ps);
   const Vec3 wi = cosine_direction(u);
   const BsdfEval e = eval(p, wo, wi, mode);
   if (!(e.pdf > 0)) return false;
@@ -63,7 +63,7 @@ inline bool sample(const RoughPlastic& p, const Vec3& wo, float u_lobe, const Ve
   const float to = transmittance(p, wo.z);
   Glint g;
   Vec3 wi;
-  if (take(u_lobe, specular_probability(p.share, 1 - to))) {
+  if (take_part(u_lobe, specular_probability(p.share, 1 - to))) {
     if (!sample_glint(p.facets, wo, u, wi, g)) return false;
   } else {
     wi = cosine_direction(u);
@@ -92,7 +92,7 @@ inline BsdfEval eval(const Phong& p, const Vec3& wo, const Vec3& wi, Mode) {
 inline bool sample(const Phong& p, const Vec3& wo, float u_lobe, const Vec2& u, Mode mode, BsdfSample& out) {
   if (!(wo.z > 0)) return false;
   Vec3 wi;
-  if (take(u_lobe, p.share)) {
+  if (take_part(u_lobe, p.share)) {
     // 1 - cos without cancellation: for large exponents the lobe is narrower than the rounding of cos.
     const float drop = -std::expm1(std::log1p(-u.x) / (p.exponent + 1)), sin = safe_sqrt(drop * (2 - drop));
     const Vec2 c = circle(u.y);

@@ -129,11 +129,11 @@ inline bool sample_direction(const Principled& p, const Vec3& wo, float u_lobe, 
   const bool front = wo.z > 0;
   const Vec3 up = front ? wo : -wo;
   const PrincipledShares s = front ? shares(p, wo.z) : PrincipledShares{0, 1, 0};
-  if (take(u_lobe, s.diffuse)) {
+  if (take_part(u_lobe, s.diffuse)) {
     wi = cosine_direction(u);
     return wi.z > 0;
   }
-  if (take(u_lobe, s.clearcoat / (s.clearcoat + s.specular))) {
+  if (take_part(u_lobe, s.clearcoat / (s.clearcoat + s.specular))) {
     const float a2 = sqr(p.clearcoat_alpha);
     const Vec2 c = circle(u.x);
     const float cos2 = (1 - std::pow(a2, 1 - u.y)) / (1 - a2), sin = safe_sqrt(1 - cos2);
@@ -144,7 +144,7 @@ inline bool sample_direction(const Principled& p, const Vec3& wo, float u_lobe, 
   const Vec3 m = sample_facet(facets(p), up, u);
   float cos_t;
   const float dielectric = fresnel_dielectric(std::max(glm::dot(up, m), 0.0f), eta, cos_t);
-  const bool refracts = take(u_lobe, refraction_probability(p, front, dielectric));
+  const bool refracts = take_part(u_lobe, refraction_probability(p, front, dielectric));
   const Vec3 up_i = refracts ? refracted(up, m, eta, cos_t) : mirrored(up, m);
   wi = front ? up_i : -up_i;
   return refracts ? up_i.z < 0 : up_i.z > 0;

@@ -94,7 +94,7 @@ inline bool sample(const RoughDielectric& d, const Vec3& wo, float u_lobe, const
   const float cos_o = glm::dot(up_o, m);
   float cos_t;
   const float reflected = fresnel_dielectric(std::max(cos_o, 0.0f), eta, cos_t);
-  const bool reflects = take(u_lobe, reflected);
+  const bool reflects = take_part(u_lobe, reflected);
   const Vec3 wi = reflects ? mirrored(up_o, m) : refracted(up_o, m, eta, cos_t);
   if (!(reflects ? wi.z > 0 : wi.z < 0)) return false;
   const Glint g = reflects ? glint_at(d.facets, m, cos_o, up_o, wi)

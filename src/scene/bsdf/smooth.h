@@ -2,21 +2,12 @@
 // Leaves: their values, densities, samples and albedos.
 #pragma once
 
+#include "ajar/core/warp.h"
 #include "ajar/scene/bsdf.h"
 #include "ajar/scene/bsdf/circle.h"
 #include "ajar/scene/bsdf/fresnel.h"
 
 namespace ajar {
-
-/// True with probability p; stretches u over the part that was taken, so that it is uniform again.
-inline bool take(float& u, float p) {
-  if (u < p) {
-    u = std::min(u / p, one_minus_epsilon);
-    return true;
-  }
-  u = std::min((u - p) / (1 - p), one_minus_epsilon);
-  return false;
-}
 
 /// What only reflects does so where both directions are in front.
 inline bool in_front(const Vec3& wo, const Vec3& wi) { return wo.z > 0 && wi.z > 0; }
@@ -68,7 +59,7 @@ inline bool sample(const Dielectric& d, const Vec3& wo, float u_lobe, const Vec2
   const float eta = eta_across(d.ior, wo);
   float cos_t;
   const float reflected = fresnel_dielectric(std::abs(wo.z), eta, cos_t);
-  if (take(u_lobe, reflected)) return set_delta(out, mirrored(wo), d.reflectance, reflected);
+  if (take_part(u_lobe, reflected)) return set_delta(out, mirrored(wo), d.reflectance, reflected);
   const Vec3 wi{-wo.x / eta, -wo.y / eta, std::copysign(cos_t, -wo.z)};
   return set_delta(out, wi, d.transmittance * mode_scale(mode, eta), 1 - reflected, eta);
 }
@@ -85,7 +76,7 @@ inline BsdfEval eval(const ThinDielectric&, const Vec3&, const Vec3&, Mode) { re
 inline bool sample(const ThinDielectric& d, const Vec3& wo, float u_lobe, const Vec2&, Mode, BsdfSample& out) {
   if (wo.z == 0) return false;
   const float reflected = pane_reflectance(d, wo);
-  if (take(u_lobe, reflected)) return set_delta(out, mirrored(wo), d.reflectance, reflected);
+  if (take_part(u_lobe, reflected)) return set_delta(out, mirrored(wo), d.reflectance, reflected);
   return set_delta(out, -wo, d.transmittance, 1 - reflected);
 }
 inline Rgb albedo(const ThinDielectric& d, const Vec3& wo) {

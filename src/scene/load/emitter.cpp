@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ajar/scene/geometry.h"
 #include "loader.h"
 
 namespace ajar {

@@ -146,8 +146,6 @@ Mat4 orientation(const DMat4& m);
 /// The unit vector across a unit vector z that Mitsuba takes where none is given, another one in 0.x than later: the
 /// first axis of its frames, and what is up for a camera.
 DVec3 across(const DVec3& z, bool old);
-/// Axes equal in length and at right angles, to a relative 1e-4.
-bool is_similarity(const DMat4& m);
 
 /// What a texture needs of the mesh that it is on.
 struct Shown {

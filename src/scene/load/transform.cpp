@@ -198,11 +198,4 @@ DMat4 to_world(Params& params, const char* name) {
   return affine_of(params.loader, *node);
 }
 
-bool is_similarity(const DMat4& m) {
-  const DVec3 x(m[0]), y(m[1]), z(m[2]);
-  const double size = glm::dot(x, x), slack = 2e-4 * size;
-  return std::abs(glm::dot(y, y) - size) < slack && std::abs(glm::dot(z, z) - size) < slack &&
-         std::abs(glm::dot(x, y)) < slack && std::abs(glm::dot(y, z)) < slack && std::abs(glm::dot(z, x)) < slack;
-}
-
 }  // namespace ajar
