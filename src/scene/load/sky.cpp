@@ -14,6 +14,8 @@ struct Daylight {
   double turbidity = 3, zenith = 0;  // of the sun, from +y [rad]
   DVec3 sun{0, 1, 0};                // towards it, in the sky's space: +y is up, -z north
   Mat4 to_world{1};                  // of the sky's space
+  double stretch = 1;                // the sky's zenith distances, and the sun's, are so many times those of the model
+  bool extend = false;               // below the horizon it goes on as it is there
 };
 
 constexpr double sun_diameter = 0.5358;  // degrees
@@ -70,7 +72,17 @@ Daylight daylight(Params& p) {
     day.sun = glm::normalize(glm::inverse(glm::dmat3(glm::dmat4(day.to_world))) * glm::normalize(towards));
     day.zenith = std::acos(std::clamp(day.sun.y, -1.0, 1.0));
   }
+  if (!p.loader.document.old) return day;
+  day.stretch = number(p, "stretch", 1);
+  if (!(day.stretch >= 1 && day.stretch <= 2)) fail(p.loader, p.node, "stretch should be from 1 to 2");
+  day.extend = boolean(p, "extend", false);
   return day;
+}
+
+// A direction at another distance from the zenith.
+DVec3 at_zenith_distance(const DVec3& w, double angle) {
+  const double across = std::hypot(w.x, w.z), scale = across > 0 ? std::sin(angle) / across : 0;
+  return {w.x * scale, std::cos(angle), w.z * scale};
 }
 
 struct Perez {
@@ -118,7 +130,9 @@ Sky make_sky(const Daylight& day) {
 // luminosity function, 106.857 nm.
 constexpr double per_kilocandela = 1000 / (683 * 106.857);
 
-Rgb radiance(const Sky& sky, const DVec3& w) {
+Rgb radiance(const Sky& sky, DVec3 w) {
+  if (sky.day.stretch != 1) w = at_zenith_distance(w, std::acos(std::clamp(w.y, -1.0, 1.0)) / sky.day.stretch);
+  if (!(w.y > 0) && sky.day.extend) w = at_zenith_distance(w, std::acos(1e-4));
   if (!(w.y > 0)) return Rgb(0);
   const double cos_zenith = std::max(w.y, 1e-3), gamma = std::acos(std::clamp(glm::dot(w, sky.day.sun), -1.0, 1.0));
   double v[3];
@@ -203,7 +217,8 @@ void add_sun(Params& p, const Daylight& day, double scale, float weight) {
   Light light;
   light.kind = half < 1e-6 ? LightKind::directional : LightKind::sun;
   light.sampling_weight = weight;
-  light.direction = -Vec3(glm::normalize(glm::dmat3(glm::dmat4(day.to_world)) * day.sun));
+  const DVec3 at = day.stretch == 1 ? day.sun : at_zenith_distance(day.sun, day.zenith * day.stretch);
+  light.direction = -Vec3(glm::normalize(glm::dmat3(glm::dmat4(day.to_world)) * at));
   double dimmer = 4 * std::numbers::pi * own;
   if (light.kind == LightKind::sun) {
     light.cone = float(2 * std::sin(half / 2) * std::sin(half / 2));

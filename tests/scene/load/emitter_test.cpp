@@ -219,6 +219,18 @@ TEST(Emitters, SunAndSky) {
   EXPECT_NEAR(-oslo.direction.y, std::sin(glm::radians(53.5f)), 0.01f);
   EXPECT_GT(-oslo.direction.z, 0.55f);
   EXPECT_SAYS(kit::error_of([] { old(emitter("sunsky", sun_at("0 -1 0"))); }), "below the horizon");
+  // Stretched, the horizon is as far below as the zenith is above, and the sun, at 45 degrees, stands at 67.5.
+  const auto below = [](const std::string& inside) {
+    const Scene s = old(emitter("sky", "<vector name='sunDirection' value='0 1 1'/>" + inside));
+    return luminance(environment(s, 0, glm::normalize(Vec3(1, -0.5f, 0.3f))));
+  };
+  EXPECT_EQ(below(""), 0);
+  EXPECT_GT(below("<float name='stretch' value='2'/>"), 0);
+  EXPECT_GT(below("<boolean name='extend' value='true'/>"), 0);
+  EXPECT_NEAR(read_old("sun", high + "<float name='stretch' value='1.5'/>").direction.y, -std::cos(glm::radians(67.5f)),
+              1e-5f);
+  EXPECT_SAYS(kit::error_of([&] { old(emitter("sky", high + "<float name='stretch' value='3'/>")); }),
+              "stretch should be");
   const Scene night = load_inside(emitter("sunsky", sun_at("0 0 -1") + "<float name='sun_aperture' value='1'/>"));
   EXPECT_TRUE(night.lights.empty());
   EXPECT_TRUE(says(night.notes, "neither it nor the sky shines"));
@@ -283,7 +295,7 @@ TEST(Emitters, ScaleOfSunsky) {
               s = old(emitter("sunsky", sun_at("0 1 1") + scaled("scale", "2") + scaled("skyScale", "3")));
   EXPECT_NEAR(power(s, 0) / power(one, 0), 3, 1e-4);
   EXPECT_NEAR(power(s, 1) / power(one, 1), 2, 1e-4);
-  EXPECT_TRUE(says(old(emitter("sky", scaled("stretch", "2"))).notes, "\"stretch\" is not used"));
+  EXPECT_TRUE(says(load_inside(emitter("sky", scaled("albedo_of_ground", "2"))).notes, "\"albedo_of_ground\" is not used"));
 }
 
 TEST(Emitters, UnknownOnesInShapes) {
