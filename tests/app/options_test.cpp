@@ -1,4 +1,4 @@
-// The options of all commands, and those that the documents name: the same.
+// The options of all commands, and those that the documents name: the same; those of scripts are among them.
 
 #include <gtest/gtest.h>
 
@@ -39,11 +39,28 @@ std::vector<fs::path> documents() {
   return out;
 }
 
-TEST(Options, AreThoseOfTheDocuments) {
-  Names helped, told;
+Names options_of_all() {
+  Names out;
   for (const char* command : {"render", "animate", "compare", "bench", "fields", "plan", "report"})
-    helped.merge(options_of(command));
-  EXPECT_TRUE(helped.contains("--integrator"));
+    out.merge(options_of(command));
+  EXPECT_TRUE(out.contains("--integrator"));
+  return out;
+}
+
+TEST(Options, ScriptsHaveNoOthers) {
+  const Names helped = options_of_all();
+  int scripts = 0;
+  for (const auto& entry : fs::directory_iterator(kit::source_path("benchmarks"))) {
+    if (entry.path().extension() != ".sh") continue;
+    ++scripts;
+    for (const std::string& option : options_in(kit::bytes_of(entry.path())))
+      EXPECT_TRUE(helped.contains(option) || option == "--mosaic") << entry.path() << " has " << option;  // of oiiotool
+  }
+  EXPECT_GT(scripts, 10);
+}
+
+TEST(Options, AreThoseOfTheDocuments) {
+  Names helped = options_of_all(), told;
   const Names of_cmake = {"--build", "--install", "--preset", "--prefix"};
   for (const fs::path& document : documents()) {
     const Names here = options_in(kit::bytes_of(document));
