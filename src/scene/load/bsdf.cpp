@@ -161,7 +161,7 @@ void retarder(Params& p, Material& m) {
 void two_colours(Params& p, Material& m) {
   const auto kind = [&](std::initializer_list<const char*> names) {
     const Node* node = find(p, names);
-    return node && is_texture(meant_by(p.loader, *node)) ? Colour::reflectance : Colour::ratio;
+    return node && !is_texture(meant_by(p.loader, *node)) ? Colour::ratio : Colour::reflectance;
   };
   m.reflectance =
       main_slot(p, {"diffuse_reflectance", "reflectance"}, 0.5f, kind({"diffuse_reflectance", "reflectance"}));
@@ -202,7 +202,7 @@ void principled(Params& p, Material& m) {
   m.ior = float(number(p, "eta", 1.5));
   if (has(p, "specular")) {  // Burley 2012: reflectance at normal incidence is 0.08 times this
     const double specular = number(p, "specular", 0.5);
-    if (!(specular >= 0 && specular <= 12)) fail(p.loader, p.node, "specular should be from 0 to 1");
+    if (!(specular >= 0 && specular <= 12)) fail(p.loader, p.node, "specular should be from 0 to 1; up to 12 is taken");
     const double least = has(p, "spec_trans") ? 1e-3 : 0;  // Mitsuba's in place of 0, where light may pass
     m.ior = float(2 / (1 - std::sqrt(0.08 * std::max(specular, least))) - 1);
     if (specular > 1)

@@ -77,7 +77,8 @@ void refuse_folds(Params& p) {
                                      : "use_shadowing_function"));
 }
 
-// The one nested texture, whatever its name; null where there is none.
+// The one nested texture, whatever its name, but since version 2 not one that is called scale; null where there is
+// none.
 const Node* nested_texture(Params& p) {
   const Node* map = nullptr;
   for (size_t i = 0; i < p.node.children.size(); ++i) {

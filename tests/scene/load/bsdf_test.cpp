@@ -170,6 +170,10 @@ TEST(Bsdf, TwoTexturedColoursAreLimited) {
     const Scene dim = load_inside(bsdf(type, bright));
     EXPECT_RGB(maximum(dim, dim.materials[0].reflectance), 0.8, 0.8, 0.8, 1e-6);
     EXPECT_FALSE(says(dim.notes, "scaled down")) << type;
+    // Without a name, and of a mesh whose colours may be anything: they count as 1 at most.
+    const Scene painted =
+        load_inside(bsdf(type, "<texture type='mesh_attribute'><string name='name' value='vertex_color'/></texture>"));
+    EXPECT_RGB(maximum(painted, painted.materials[0].reflectance), 1 / 1.2, 1 / 1.2, 1 / 1.2, 1e-6);
   }
 }
 
