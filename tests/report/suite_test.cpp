@@ -2,6 +2,7 @@
 
 #include "ajar/report/suite.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
