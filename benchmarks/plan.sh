@@ -9,8 +9,10 @@ set -e
 ajar=${1?usage: plan.sh AJAR FOLDER} folder=${2?FOLDER}
 threads=${THREADS:+--threads $THREADS}
 mkdir -p "$folder"
+rm -f "$folder/bench/results.json"
+status=0
 "$ajar" bench "$(dirname "$0")/plan.json" -o "$folder/bench" --references "$folder/references" $threads > "$folder/bench.txt" || status=$?  # a reference may be refused
-[ -e "$folder/bench/results.json" ] || exit ${status:-1}
+[ -e "$folder/bench/results.json" ] || exit $status
 python3 - "$folder" <<'TABLE'
 import json, math, sys
 ways = ('path', 'bdpt', 'guided-path', 'guided-bdpt')
@@ -31,4 +33,4 @@ for scene in json.load(open(sys.argv[1] + '/bench/results.json'))['scenes']:
           ' | '.join(f'{x:.2f}' for x in rows[-1]) + ' |')
 print('| mean | | | | | | ' + ' | '.join(f'{mean(x):.2f}' for x in zip(*rows)) + ' |')
 TABLE
-exit ${status:-0}
+exit $status
