@@ -4,15 +4,7 @@
 set -euo pipefail
 a=${1?usage: builds.sh AJAR_A AJAR_B [ROUNDS [SPP [SCENE.xml ...]]]} b=${2?AJAR_B} rounds=${3:-2} spp=${4:-16}
 root=$(dirname "$0")/..
-shared=${AJAR_SHARED_SCENES:-$root/../shared/scenes}
-if (($# > 4)); then
-  shift 4
-else
-  set -- "$shared"/*/scene.xml
-  for file in "$root"/scenes/*/*.xml; do  # but for parts of scenes
-    if [[ $file != */room.xml ]] && grep -q '<sensor\|<include' "$file"; then set -- "$@" "$file"; fi
-  done
-fi
+if (($# > 4)); then shift 4; else source "$root/benchmarks/scenes.sh"; fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 

@@ -53,10 +53,9 @@ struct Run {
 // What the one even pass after `before` brought: the next point of the first of the two sequences.
 Values since(const Film& film, const Film& before) {
   if (before.passes == 0) return flat(film.half_sum, 1);
-  const auto weight = [](const Film& f) { return f.half_weight / ((f.passes + 1) / 2); };  // of a pass in the sum
-  const double now = weight(film), then = weight(before), scale = 1 / (film.half_weight - before.half_weight);
   std::vector<glm::dvec3> added(film.half_sum);
-  for (size_t i = 0; i < added.size(); ++i) added[i] = scale * (now * added[i] - then * before.half_sum[i]);
+  for (size_t i = 0; i < added.size(); ++i)
+    added[i] = sum_since(even_passes(film), even_passes(before), added[i], before.half_sum[i]);
   return flat(added, 1);
 }
 

@@ -5,16 +5,7 @@
 set -e
 ajar=${1?usage: ray_cost.sh AJAR [SECONDS [SCENE.xml ...]]} seconds=${2:-8}
 root=$(dirname "$0")/..
-shared=${AJAR_SHARED_SCENES:-$root/../shared/scenes}
-if [ $# -gt 2 ]; then
-  shift 2
-else
-  set -- "$shared"/*/scene.xml
-  for file in "$root"/scenes/*/*.xml; do  # but for parts of scenes
-    case $file in */room.xml) continue ;; esac
-    if grep -q '<sensor\|<include' "$file"; then set -- "$@" "$file"; fi
-  done
-fi
+if [ $# -gt 2 ]; then shift 2; else . "$root/benchmarks/scenes.sh"; fi
 folder=$(mktemp -d)
 trap 'rm -r "$folder"' EXIT
 echo '| scene | path | guided-path | bdpt | guided-bdpt | guided-vcm |

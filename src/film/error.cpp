@@ -38,8 +38,9 @@ glm::dvec3 mean_around(const Film& film, const std::vector<glm::dvec3>& mean, in
 
 // The mean of the even passes less that of the odd ones.
 glm::dvec3 halves_apart(const Film& film, size_t i, const glm::dvec3& mean) {
-  const double even = (film.passes + 1) / 2, odd_weight = film.weight - film.half_weight;
-  return film.half_sum[i] / even - (film.weight * mean - film.half_weight / even * film.half_sum[i]) / odd_weight;
+  const Summed even = even_passes(film);
+  return film.half_sum[i] / even.passes -
+         (film.weight * mean - even.weight / even.passes * film.half_sum[i]) / (film.weight - even.weight);
 }
 
 // Of the square by which the halves are apart, what is the error's. (E1)

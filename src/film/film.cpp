@@ -122,9 +122,9 @@ void finish_pass(Film& film, double weight) {
   film.chunks = 0;
 }
 
-glm::dvec3 sum_since(const Film& film, const Film& before, const glm::dvec3& now, const glm::dvec3& then) {
-  const double scale = (film.passes - before.passes) / (film.weight - before.weight);
-  return scale * (film.weight / film.passes * now - before.weight / before.passes * then);
+glm::dvec3 sum_since(const Summed& of_now, const Summed& of_then, const glm::dvec3& now, const glm::dvec3& then) {
+  const double scale = (of_now.passes - of_then.passes) / (of_now.weight - of_then.weight);
+  return scale * (of_now.weight / of_now.passes * now - of_then.weight / of_then.passes * then);
 }
 
 Picture develop(const Film& film) {

@@ -3,8 +3,6 @@
 namespace ajar {
 namespace {
 
-double join_count(Heuristic h, const SampleCounts& n, bool seen) { return raise(h, ajar::join_count(n, seen)); }
-
 // v of (R2) for the strategy that connects the end's last vertex to the one before.
 double v_of_last(const End& end, double first, double inner) {
   return end.delta_before ? 0 : (end.n == 2 ? first : inner);
@@ -40,10 +38,11 @@ double mis_weight(Heuristic h, const End& light, const End& camera, const NextEv
   // Everything relative to the product of ordinary densities with s vertices from emission and t from the camera. (R1)
   const bool both_walked = light.n > 1 && camera.n > 1;
   const double here =
-      both_walked ? join_count(h, counts, camera.seen) : (light.n == 1 ? lit : 1) * (camera.n == 1 ? film : 1);
+      both_walked ? raise(h, join_count(counts, camera.seen)) : (light.n == 1 ? lit : 1) * (camera.n == 1 ? film : 1);
   // The light's last vertex becomes the camera's.
   const bool seen = camera.n == 1;
-  const double fewer_light = handed_over(h, light, lit, join_count(h, counts, seen), seen ? 1 : counts.merge_inner);
+  const double fewer_light =
+      handed_over(h, light, lit, raise(h, join_count(counts, seen)), seen ? 1 : counts.merge_inner);
   // A strategy with t - 1 .. 1 camera vertices; s + 1 of light: next-event estimation where that is the first one.
   double fewer_camera, next_event = here;
   if (light.n == 0 && camera.n >= 2) {
@@ -53,7 +52,7 @@ double mis_weight(Heuristic h, const End& light, const End& camera, const NextEv
     fewer_camera = last * extend(v, raise(h, ratio(camera.other_before, camera.own_before)), camera.sum_before);
     next_event = last * v;
   } else {
-    fewer_camera = handed_over(h, camera, film, join_count(h, counts, camera.seen_before), 1);
+    fewer_camera = handed_over(h, camera, film, raise(h, join_count(counts, camera.seen_before)), 1);
   }
   const double all = here + fewer_light + fewer_camera, rays = raise(h, nee.rays / first_seen);
   if (light.n > 1 || rays == 1) return here / all;
@@ -71,7 +70,7 @@ double mis_of_camera(Heuristic h, const End& light, const End& camera, const Nex
 MergeSide merge_side(Heuristic h, const End& end, double back, double first, const SampleCounts& counts) {
   const double own = raise(h, ratio(1, end.own));
   const double before = std::min(raise(h, ratio(back, end.own_before)) * end.sum_before, largest_ratio * largest_ratio);
-  return {v_of_last(end, raise(h, first), join_count(h, counts, end.seen_before)) * own, before * own};
+  return {v_of_last(end, raise(h, first), raise(h, join_count(counts, end.seen_before))) * own, before * own};
 }
 
 double merge_weight(Heuristic h, double merge, const MergeSide& light, double light_reverse, const MergeSide& camera,

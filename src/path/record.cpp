@@ -1,7 +1,5 @@
 #include "ajar/path/record.h"
 
-#include "ajar/field/nextevent.h"
-
 namespace ajar {
 namespace {
 

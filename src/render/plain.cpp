@@ -154,8 +154,8 @@ PassHalves halves_since(const Film& film, const Film& before, const std::vector<
   const PassHalves old = halves_of(before, squares);
   out.passes -= old.passes;
   for (size_t i = 0; i < out.sum.size(); ++i) {
-    out.sum[i] = sum_since(film, before, out.sum[i], old.sum[i]);
-    out.half[i] = sum_since(film, before, out.half[i], old.half[i]);
+    out.sum[i] = sum_since(all_passes(film), all_passes(before), out.sum[i], old.sum[i]);
+    out.half[i] = sum_since(even_passes(film), even_passes(before), out.half[i], old.half[i]);
   }
   return out;
 }

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -14,17 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Measuring : testing::Test {
-  fs::path folder;
-
-  void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder =
-        fs::path(testing::TempDir()) / ("ajar measuring " + std::string(info->name()) + std::to_string(::getpid()));
-    fs::create_directories(folder);
-  }
-  void TearDown() override { fs::remove_all(folder); }
-
+struct Measuring : kit::InFolder {
   /// What a command prints, which has to end well: its lines that have all of `words`.
   size_t lines(const std::string& command, const std::vector<std::string>& words) const {
     const fs::path out = folder / "out", said = folder / "said";

@@ -15,18 +15,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Program : testing::Test {
-  fs::path folder;
-
+struct Program : kit::InFolder {
   void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder = fs::path(testing::TempDir()) / ("ajar program " + std::string(info->name()) + std::to_string(::getpid()));
     fs::create_directories(folder / "there");
     fs::permissions(folder, fs::perms::all);
     for (const char* name : {"box.xml", "room.xml"})
       fs::copy_file(kit::source_path("scenes/box/" + std::string(name)), folder / name);
   }
-  void TearDown() override { fs::remove_all(folder); }
 
   /// Exit code of a line of the shell, in the folder; $ajar is the program.
   int run(const std::string& line) const {

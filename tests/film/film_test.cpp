@@ -173,8 +173,10 @@ TEST(Weights, WhatCameSinceIsWhatThosePassesBring) {
   const float values[] = {3, 4, 7, 0, 1, 2};
   for (int i = 0; i < 6; ++i)
     for (Film* f : {&film, &later}) pass(*f, grey({values[i]}), {}, i < 2 ? 1.5 : 4);
-  EXPECT_NEAR(sum_since(film, before, film.camera_sum[0], before.camera_sum[0]).x, later.camera_sum[0].x, 1e-12);
-  EXPECT_NEAR(sum_since(film, before, film.half_sum[0], before.half_sum[0]).x, later.half_sum[0].x, 1e-12);
+  EXPECT_NEAR(sum_since(all_passes(film), all_passes(before), film.camera_sum[0], before.camera_sum[0]).x,
+              later.camera_sum[0].x, 1e-12);
+  EXPECT_NEAR(sum_since(even_passes(film), even_passes(before), film.half_sum[0], before.half_sum[0]).x,
+              later.half_sum[0].x, 1e-12);
 }
 
 }  // namespace

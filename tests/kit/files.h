@@ -4,6 +4,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <concepts>
 #include <cstdlib>
@@ -33,6 +34,17 @@ inline std::string bytes_of(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
 }
+
+/// A test with a folder of its own, whose name has a space.
+struct InFolder : testing::Test {
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) /
+      ("ajar " + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) +
+       std::to_string(::getpid()));
+
+  InFolder() { std::filesystem::create_directories(folder); }
+  ~InFolder() override { std::filesystem::remove_all(folder); }
+};
 
 /// What the call says when it throws Error; empty when it does not.
 std::string error_of(const std::invocable auto& call) {

@@ -82,9 +82,15 @@ void drop_passes(Film& film);
 /// Closes the pass at work, which counts for so much, above 0; an even pass and the one after it for as much as each
 /// other.
 void finish_pass(Film& film, double weight = 1);
-/// Of a sum of the film and what it was when the film was as before: what the passes since then have brought, as many
-/// of them that count alike. (A2)
-glm::dvec3 sum_since(const Film& film, const Film& before, const glm::dvec3& now, const glm::dvec3& then);
+/// Passes that a sum of the film is of, and what they count for.
+struct Summed {
+  double passes = 0, weight = 0;
+};
+inline Summed all_passes(const Film& film) { return {double(film.passes), film.weight}; }
+inline Summed even_passes(const Film& film) { return {double((film.passes + 1) / 2), film.half_weight}; }
+/// Of a sum and what it was before, of some passes: what those since then have brought, as many of them that count
+/// alike. (A2)
+glm::dvec3 sum_since(const Summed& of_now, const Summed& of_then, const glm::dvec3& now, const glm::dvec3& then);
 /// Linear RGB estimate, its fireflies limited where the film is to; includes the chunks of the pass at work that are
 /// done.
 Picture develop(const Film& film);
