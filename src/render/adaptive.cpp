@@ -52,12 +52,45 @@ double share_left(const std::vector<double>& found, const std::vector<double>& s
 }
 
 // Of what samples varied by in a pass, the share that is left in the image.
-std::vector<double> shares_left(const Film& film, const std::vector<double>& seen) {
-  const std::vector<double> found = relative_to(film, half_differences(film));
+std::vector<double> shares_left(const Film& film, const std::vector<double>& found, const std::vector<double>& seen) {
   return each_pixel(film, [&](int x, int y) { return share_left(found, seen, film, x, y); });
 }
 
+// Of what passes bring a pixel and the one to its right. Sums that are full tell nothing.
+double covariance(const PixelSpread& s, const PixelSpread& right, double passes) {
+  const double products = s.beside;
+  if (!(std::abs(products) < infinity)) return 0;
+  return (products - s.mean * double(right.mean) / passes) / (passes - 1);
+}
+
+// What the samples of a pass have in common with those of the pixel beside them, relative to the image: noise of the
+// light vertices that both join, which more samples do not mend.
+double shared_noise(const Film& film, const Adaptive& adaptive) {
+  if (film.width < 2) return 0;
+  std::vector<double> shared = each_pixel(film, [&](int x, int y) {
+    const PixelSpread* s = &adaptive.spread[size_t(y) * film.width + std::min(x, film.width - 2)];
+    return covariance(s[0], s[1], adaptive.passes);
+  });
+  shared = relative_to(film, std::move(shared));
+  trim(shared);
+  for (double& x : shared) x = -x;
+  return std::max(-trimmed_mean(std::move(shared)), 0.0);
+}
+
+// What one camera sample varies by, relative to the image, as far as that is left in it.
+struct Noise {
+  std::vector<double> around;  // root of it by the pixels around one, which tell how many samples it is to have
+  std::vector<double> own;     // by its own samples, which tell what that brings
+  double rest = 0;             // of the error: what more samples do not mend
+  double share = 1;            // of what samples vary by that the image shows
+};
+
 double count_for(double scale, double deviation) { return std::clamp(scale * deviation, 1.0, Adaptive::most); }
+
+double greatest_kept(std::vector<double> values) {
+  trim(values);
+  return *std::max_element(values.begin(), values.end());
+}
 
 // Counts of so many times the deviation, and what error times samples is by them, over that of even ones.
 struct Scale {
@@ -65,22 +98,22 @@ struct Scale {
 };
 
 // That of the least quotient, and of more samples only where they bring a hundredth: where noise is in proportion to
-// the counts and there is no rest, twice as many are as good, and rounding would choose. `rest` is what more samples do
-// not mend; `share`, of their variance what the error shows.
-Scale best_scale(const std::vector<double>& deviations, double rest, double share) {
-  std::vector<double> sorted = deviations;
+// the counts and there is no rest, twice as many are as good, and rounding would choose.
+Scale best_scale(const Noise& noise) {
+  std::vector<double> sorted = noise.around;
   const auto middle = sorted.begin() + std::ptrdiff_t(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
   const double typical = *middle > 0 ? *middle : *std::max_element(middle, sorted.end());
   if (!(typical > 0)) return {};
-  const double pixels = double(deviations.size());
+  const double most = greatest_kept(noise.own);
   const auto product = [&](double scale) {
-    double samples = 0, left = 0;
-    for (const double d : deviations) {
-      const double n = count_for(scale, d);
-      samples += n, left += d * d / n;
+    double samples = 0, left = 0, kept = 0;
+    for (size_t i = 0; i < noise.own.size(); ++i) {
+      const double n = count_for(scale, noise.around[i]);
+      samples += n;
+      if (noise.own[i] <= most) left += noise.own[i] / n, ++kept;
     }
-    return (rest + share * left / pixels) * samples;
+    return (noise.rest + noise.share * left / kept) * samples;
   };
   const double even = product(0);
   Scale best;
@@ -92,9 +125,8 @@ Scale best_scale(const std::vector<double>& deviations, double rest, double shar
 }
 
 // Quotient above which pixels are left even: counts that change, and that are no powers of two, take from sequences
-// what a little gain brings. Not where an image errs by more than its samples mostly say: where there are sparks no
-// sequence converges. Measured (docs/results/adaptive.md).
-double worthwhile(double error, double sampled) { return error > 1.2 * sampled ? 0.97 : 0.85; }
+// what a little gain brings. Measured (docs/results/adaptive.md).
+constexpr double worthwhile = 0.88;
 
 // Whole numbers that are so many times the deviation in the mean, the same at every look.
 std::vector<uint8_t> draw_counts(double scale, const std::vector<double>& deviations) {
@@ -127,27 +159,36 @@ uint32_t passes_drawn(const Film& film, const Adaptive& adaptive) {
   return std::max(film.dropped + film.passes + (film.chunks > 0), adaptive.first + drawn);
 }
 
+void note_pass(const Film& film, Adaptive& adaptive) {
+  ++adaptive.passes;
+  for (size_t i = 0; i < adaptive.spread.size(); ++i) {
+    PixelSpread& s = adaptive.spread[i];
+    const float own = luminance(film.camera[i]);
+    s.mean += own;
+    if ((i + 1) % size_t(film.width) > 0) s.beside += own * luminance(film.camera[i + 1]);
+  }
+}
+
 void allot(const Film& film, Adaptive& adaptive) {
-  const double error = estimate_sample_error(film);
-  if (adaptive.spread.empty() || !(error > 0) || !(error < infinity)) return;
-  const std::vector<double> errors = relative_to(film, variances_of(adaptive.spread));
+  if (adaptive.spread.empty() || adaptive.passes < 2) return;
+  Noise noise;
+  noise.own = relative_to(film, variances_of(adaptive.spread));
   // What samples' variance was in a pass, which had this many of them.
-  std::vector<double> seen = errors;
+  std::vector<double> seen = noise.own;
   for (size_t i = 0; i < seen.size(); ++i) seen[i] *= adaptive.passes / std::max(count(adaptive.spread[i]), 1.0);
-  const double bound = worthwhile(error, trimmed_mean(seen));
-  const std::vector<double> shares = shares_left(film, seen);
-  for (size_t i = 0; i < seen.size(); ++i) seen[i] *= shares[i];
-  const double sampled = trimmed_mean(seen);
-  if (!(sampled > 0)) return;
-  // Sparks are in the error and not in what was trimmed: the rest is not taken for more than what samples bring.
-  const double rest = std::clamp(error - sampled, 0.0, sampled), share = std::min(error / sampled, 1.0);
-  const std::vector<double> deviations = each_pixel(
-      film, [&](int x, int y) { return std::sqrt(near(errors, film, x, y) * shares[size_t(y) * film.width + x]); });
-  const Scale best = best_scale(deviations, rest, share);
-  if (best.quotient > bound)
+  const std::vector<double> found = relative_to(film, half_differences(film)), shares = shares_left(film, found, seen);
+  noise.around = each_pixel(
+      film, [&](int x, int y) { return std::sqrt(near(noise.own, film, x, y) * shares[size_t(y) * film.width + x]); });
+  for (size_t i = 0; i < seen.size(); ++i) seen[i] *= shares[i], noise.own[i] *= shares[i];
+  const double sampled = trimmed_mean(std::move(seen)), all = trimmed_mean(found);
+  if (!(sampled > 0) || !(all > 0) || !(all < infinity)) return;
+  noise.rest = std::min(std::max(all - sampled, 0.0) + shared_noise(film, adaptive), all);  // (A3)
+  noise.share = std::min((all - noise.rest) / sampled, 1.0);
+  const Scale best = best_scale(noise);
+  if (best.quotient > worthwhile)
     adaptive.counts.clear();
   else
-    adaptive.counts = draw_counts(best.scale, deviations);
+    adaptive.counts = draw_counts(best.scale, noise.around);
 }
 
 }  // namespace ajar

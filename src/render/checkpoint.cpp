@@ -10,7 +10,7 @@
 namespace ajar {
 namespace {
 
-constexpr FileKind checkpoint_kind = {"AJARck28", "checkpoint", "render once with --checkpoint",
+constexpr FileKind checkpoint_kind = {"AJARck29", "checkpoint", "render once with --checkpoint",
                                       "start again without --resume"};
 
 // One list of fields for both ways.

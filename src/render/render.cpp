@@ -134,9 +134,9 @@ void trace_next(const Job& job, const RenderOptions& options, Workshop& shop, Re
   note_rejected(state.stats, shop.vpls, pass.job.seed);
   take_counts(pass.job, shop.scratches, state);
   if (film.chunks < chunk_count(film)) return;
+  if (pass.job.adaptive) note_pass(film, state.adaptive);
   finish_pass(film, weight_of(pass.job));
   if (pass.job.beyond) ++state.balance.passes;
-  if (pass.job.adaptive) ++state.adaptive.passes;
   if (job.learning && !pass.plain) teach(*job.scene, options, pass.job.light_rate, state);
 }
 

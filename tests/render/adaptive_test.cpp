@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "ajar/core/sampler.h"
 #include "ajar/scene/load.h"
 #include "kit/files.h"
 #include "measure.h"
@@ -77,10 +78,53 @@ TEST(Adaptive, NoisyPixelsHaveMoreByTheRootOfTheirVariance) {
 }
 
 TEST(Adaptive, WhatMoreSamplesDoNotMendMakesThemFewer) {
-  Look alone = noisy_strip(0.001, 0.025), shared = noisy_strip(0.001, 0.025, 0.001);
-  allot(alone), allot(shared);
-  EXPECT_GT(noisy_count(shared), 1.5);
-  EXPECT_LT(noisy_count(shared), 0.85 * noisy_count(alone));
+  Look alone = noisy_strip(0.001, 0.025), splats = noisy_strip(0.001, 0.025, 0.001);
+  allot(alone), allot(splats);
+  EXPECT_GT(noisy_count(splats), 1.5);
+  EXPECT_LT(noisy_count(splats), 0.85 * noisy_count(alone));
+}
+
+// Passes by which neighbours are too bright together, or too dark, by so much.
+void share_noise(Look& look, double variance) {
+  const float swing = std::sqrt(float(variance * (passes - 1) / passes));
+  for (PixelSpread& s : look.adaptive.spread) s.mean = passes * light, s.beside = passes * (sqr(light) + sqr(swing));
+}
+
+TEST(Adaptive, NoiseThatNeighboursShareIsNotMended) {
+  Look alone = noisy_strip(0.001, 0.025), some = noisy_strip(0.001, 0.025), all = noisy_strip(0.001, 0.025);
+  share_noise(alone, 0), share_noise(some, 0.001), share_noise(all, 0.1);
+  allot(alone), allot(some), allot(all);
+  EXPECT_GT(noisy_count(some), 1.5);
+  EXPECT_LT(noisy_count(some), 0.85 * noisy_count(alone));
+  EXPECT_TRUE(all.adaptive.counts.empty());
+}
+
+// The noise of a pixel's own samples is not its neighbour's.
+TEST(Adaptive, PassesShowWhatNeighboursShare) {
+  Look own = noisy_strip(0.001, 0.025), shared = own;
+  for (Look* look : {&own, &shared})
+    for (look->adaptive.passes = 0; look->adaptive.passes < passes;) {
+      const uint32_t pass = look->adaptive.passes;
+      for (size_t i = 0; i < look->film.pixels(); ++i) {
+        const float u = to_unit(uint32_t(hash(pass, look == &own ? i : 0) >> 32)) - 0.5f;
+        look->film.camera[i] = Rgb(light * (1 + u));
+      }
+      note_pass(look->film, look->adaptive);
+    }
+  allot(own), allot(shared);
+  EXPECT_GT(noisy_count(own), 3);
+  EXPECT_TRUE(shared.adaptive.counts.empty());
+}
+
+// What chooses the counts is not what they are judged by: a strip that varies by turns is as noisy as its surroundings.
+TEST(Adaptive, CountsAreJudgedByThePixelsOwnSamples) {
+  Look look = noisy_strip(0.001, 0.025);
+  allot(look);
+  ASSERT_FALSE(look.adaptive.counts.empty());
+  for (int i = 0; i < width * height; ++i)
+    if (i % width % 3 == 1 && i / width % 3 == 1) set(look, i, 0.3, 0.3);
+  allot(look);
+  EXPECT_TRUE(look.adaptive.counts.empty()) << "those around noisy pixels are calm";
 }
 
 // Where points of a sequence lie evenly samples vary and the image does not.
@@ -94,14 +138,10 @@ TEST(Adaptive, SamplesThatErrLessTogetherAreNotWorthMore) {
 }
 
 TEST(Adaptive, SmallGainsAreNotWorthUnevenSamples) {
-  Look look = noisy_strip(0.001, 0.005);
+  Look look = noisy_strip(0.001, 0.004);
   look.adaptive.counts.assign(look.film.pixels(), 2);
   allot(look);
   EXPECT_TRUE(look.adaptive.counts.empty());
-  // Sparks in a row, of which samples know nothing: even so much is worth it where no sequence converges.
-  for (int x = 0; x < width; ++x) set(look, x, 0.001, 0.016);
-  allot(look);
-  EXPECT_FALSE(look.adaptive.counts.empty());
 }
 
 // Its own samples would choose what comes after them. Some pixels are calm in one image and as many others in the next.

@@ -12,6 +12,7 @@ namespace ajar {
 struct PixelSpread {
   float sum = 0, square = 0;
   uint32_t counts[2] = {0, 0};  ///< in even passes and odd ones: numbers of their sequences that are used up
+  float mean = 0, beside = 0;   ///< over passes: of their means, and of these times those of the pixel to the right
 };
 
 /// A pass is the mean of a pixel's samples in it, so that it counts as much in one pixel as in another. How many is
@@ -35,7 +36,9 @@ double mean_count(const Adaptive& adaptive);
 double samples_of_pass(const Film& film, const Adaptive& adaptive);
 /// Passes of one camera sample each that would have drawn all numbers which were drawn so far.
 uint32_t passes_drawn(const Film& film, const Adaptive& adaptive);
-/// Chooses the counts anew. Does nothing while the film has fewer than two passes, or is black.
+/// Notes the pass whose image the film has, and is about to take in.
+void note_pass(const Film& film, Adaptive& adaptive);
+/// Chooses the counts anew. Does nothing while there are fewer than two passes, or where the film is black.
 void allot(const Film& film, Adaptive& adaptive);
 
 }  // namespace ajar
