@@ -125,8 +125,9 @@ Scale best_scale(const Noise& noise) {
 }
 
 // Quotient above which pixels are left even: counts that change, and that are no powers of two, take from sequences
-// what a little gain brings. Measured (docs/results/adaptive.md).
-constexpr double worthwhile = 0.88;
+// what a little gain brings. Less of it where an image errs by more than its samples mostly say: where there are sparks
+// no sequence converges. Measured (docs/results/adaptive.md).
+double worthwhile(double error, double sampled) { return error > 1.2 * sampled ? 0.92 : 0.88; }
 
 // Whole numbers that are so many times the deviation in the mean, the same at every look.
 std::vector<uint8_t> draw_counts(double scale, const std::vector<double>& deviations) {
@@ -179,13 +180,14 @@ void allot(const Film& film, Adaptive& adaptive) {
   const std::vector<double> found = relative_to(film, half_differences(film)), shares = shares_left(film, found, seen);
   noise.around = each_pixel(
       film, [&](int x, int y) { return std::sqrt(near(noise.own, film, x, y) * shares[size_t(y) * film.width + x]); });
+  const double bound = worthwhile(estimate_sample_error(film), trimmed_mean(seen));
   for (size_t i = 0; i < seen.size(); ++i) seen[i] *= shares[i], noise.own[i] *= shares[i];
   const double sampled = trimmed_mean(std::move(seen)), all = trimmed_mean(found);
   if (!(sampled > 0) || !(all > 0) || !(all < infinity)) return;
   noise.rest = std::min(std::max(all - sampled, 0.0) + shared_noise(film, adaptive), all);  // (A3)
   noise.share = std::min((all - noise.rest) / sampled, 1.0);
   const Scale best = best_scale(noise);
-  if (best.quotient > worthwhile)
+  if (best.quotient > bound)
     adaptive.counts.clear();
   else
     adaptive.counts = draw_counts(best.scale, noise.around);

@@ -142,6 +142,10 @@ TEST(Adaptive, SmallGainsAreNotWorthUnevenSamples) {
   look.adaptive.counts.assign(look.film.pixels(), 2);
   allot(look);
   EXPECT_TRUE(look.adaptive.counts.empty());
+  // An image that errs by more than its samples say, here by colours of the same luminance: no sequence converges.
+  for (glm::dvec3& half : look.film.half_sum) half += glm::dvec3(0.7152, -0.2126, 0) * 0.5;
+  allot(look);
+  EXPECT_FALSE(look.adaptive.counts.empty());
 }
 
 // Its own samples would choose what comes after them. Some pixels are calm in one image and as many others in the next.
