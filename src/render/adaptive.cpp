@@ -4,17 +4,16 @@
 #include <cmath>
 #include <numeric>
 
+#include "ajar/core/parallel.h"
 #include "ajar/core/sampler.h"
 #include "ajar/film/pixels.h"
 
 namespace ajar {
 namespace {
 
-double count(const PixelSpread& s) { return double(s.counts[0]) + s.counts[1]; }
-
 // Sums that are full tell nothing (light of 10^19 and more).
 double variance_of(const PixelSpread& s) {
-  const double n = count(s);
+  const double n = s.samples;
   if (!(n > 1) || !(s.square < infinity)) return 0;
   return std::max(double(s.square) - sqr(double(s.sum)) / n, 0.0) / (n - 1);
 }
@@ -24,6 +23,8 @@ std::vector<double> variances_of(const std::vector<PixelSpread>& spread) {
   for (const PixelSpread& s : spread) out.push_back(variance_of(s));
   return out;
 }
+
+bool has_right(const Film& film, size_t pixel) { return (pixel + 1) % size_t(film.width) > 0; }
 
 // The others of the square around a pixel: it has no say in its own count.
 void others_around(const Film& film, int x, int y, int reach, const auto& use) {
@@ -58,30 +59,31 @@ std::vector<double> shares_left(const Film& film, const std::vector<double>& fou
 
 // Of what passes bring a pixel and the one to its right. Sums that are full tell nothing.
 double covariance(const PixelSpread& s, const PixelSpread& right, double passes) {
-  const double products = s.beside;
-  if (!(std::abs(products) < infinity)) return 0;
-  return (products - s.mean * double(right.mean) / passes) / (passes - 1);
+  const double found = (double(s.beside) - double(s.mean) * double(right.mean) / passes) / (passes - 1);
+  return std::abs(found) < infinity ? found : 0;
 }
 
 // What the samples of a pass have in common with those of the pixel beside them, relative to the image: noise of the
 // light vertices that both join, which more samples do not mend.
 double shared_noise(const Film& film, const Adaptive& adaptive) {
-  if (film.width < 2) return 0;
-  std::vector<double> shared = each_pixel(film, [&](int x, int y) {
-    const PixelSpread* s = &adaptive.spread[size_t(y) * film.width + std::min(x, film.width - 2)];
-    return covariance(s[0], s[1], adaptive.passes);
-  });
-  shared = relative_to(film, std::move(shared));
+  const std::vector<double> relative = relative_to(film, std::vector<double>(film.pixels(), 1.0));
+  std::vector<double> shared;
+  for (size_t i = 0; i + 1 < film.pixels(); ++i)
+    if (has_right(film, i))
+      shared.push_back(covariance(adaptive.spread[i], adaptive.spread[i + 1], adaptive.passes) *
+                       std::sqrt(relative[i] * relative[i + 1]));
+  if (shared.empty()) return 0;
   trim(shared);
   for (double& x : shared) x = -x;
   return std::max(-trimmed_mean(std::move(shared)), 0.0);
 }
 
-// What one camera sample varies by, relative to the image, as far as that is left in it.
+// What one camera sample varies by, relative to the image, as far as that is left in it; and what a pass errs by
+// however many it has.
 struct Noise {
-  std::vector<double> around;  // root of it by the pixels around one, which tell how many samples it is to have
-  std::vector<double> own;     // by its own samples, which tell what that brings
-  double rest = 0;             // of the error: what more samples do not mend
+  std::vector<double> around;  // root of the former by the pixels around one, which tell how many samples it is to have
+  std::vector<double> own;     // the former by its own samples, which tell what that brings
+  double rest = 0;             // the latter
   double share = 1;            // of what samples vary by that the image shows
 };
 
@@ -148,7 +150,7 @@ double mean_count(const Adaptive& adaptive) {
 
 double samples_of_pass(const Film& film, const Adaptive& adaptive) {
   double samples = 0, pixels = double(adaptive.passes) * double(adaptive.spread.size());
-  for (const PixelSpread& s : adaptive.spread) samples += count(s);
+  for (const PixelSpread& s : adaptive.spread) samples += s.samples;
   for (uint32_t chunk = 0; chunk < film.chunks; ++chunk) pixels += double(tile_bounds(film, chunk).pixels());
   return samples > 0 && pixels > 0 ? samples / pixels : 1;
 }
@@ -162,29 +164,41 @@ uint32_t passes_drawn(const Film& film, const Adaptive& adaptive) {
 
 void note_pass(const Film& film, Adaptive& adaptive) {
   ++adaptive.passes;
-  for (size_t i = 0; i < adaptive.spread.size(); ++i) {
-    PixelSpread& s = adaptive.spread[i];
-    const float own = luminance(film.camera[i]);
-    s.mean += own;
-    if ((i + 1) % size_t(film.width) > 0) s.beside += own * luminance(film.camera[i + 1]);
-  }
+  parallel_ranges(adaptive.spread.size(), 16384, [&](size_t from, size_t to) {
+    for (size_t i = from; i < to; ++i) {
+      PixelSpread& s = adaptive.spread[i];
+      const float own = luminance(film.camera[i]);
+      s.mean += own;
+      if (has_right(film, i)) s.beside += own * luminance(film.camera[i + 1]);
+    }
+  });
+}
+
+void forget_sums(Adaptive& adaptive) {
+  adaptive.passes = 0;
+  for (PixelSpread& s : adaptive.spread) s = {.counts = {s.counts[0], s.counts[1]}};
 }
 
 void allot(const Film& film, Adaptive& adaptive) {
   if (adaptive.spread.empty() || adaptive.passes < 2) return;
+  const double error = estimate_sample_error(film);
   Noise noise;
   noise.own = relative_to(film, variances_of(adaptive.spread));
   // What samples' variance was in a pass, which had this many of them.
   std::vector<double> seen = noise.own;
-  for (size_t i = 0; i < seen.size(); ++i) seen[i] *= adaptive.passes / std::max(count(adaptive.spread[i]), 1.0);
+  for (size_t i = 0; i < seen.size(); ++i)
+    seen[i] *= adaptive.passes / std::max(double(adaptive.spread[i].samples), 1.0);
+  const double bound = worthwhile(error, trimmed_mean(seen));
   const std::vector<double> found = relative_to(film, half_differences(film)), shares = shares_left(film, found, seen);
   noise.around = each_pixel(
       film, [&](int x, int y) { return std::sqrt(near(noise.own, film, x, y) * shares[size_t(y) * film.width + x]); });
-  const double bound = worthwhile(estimate_sample_error(film), trimmed_mean(seen));
   for (size_t i = 0; i < seen.size(); ++i) seen[i] *= shares[i], noise.own[i] *= shares[i];
   const double sampled = trimmed_mean(std::move(seen)), all = trimmed_mean(found);
   if (!(sampled > 0) || !(all > 0) || !(all < infinity)) return;
-  noise.rest = std::min(std::max(all - sampled, 0.0) + shared_noise(film, adaptive), all);  // (A3)
+  // Of what is shared, what samples vary by has a part, but divided by their number.
+  const double shared = shared_noise(film, adaptive),
+               beyond = all - sampled - shared * (1 - 1 / samples_of_pass(film, adaptive));
+  noise.rest = std::min(std::max(beyond, 0.0) + shared, all);  // (A3)
   noise.share = std::min((all - noise.rest) / sampled, 1.0);
   const Scale best = best_scale(noise);
   if (best.quotient > bound)

@@ -77,7 +77,7 @@ bool trace_half(const Job& job, Sample sample, uint32_t recorded, Scratch& scrat
 
 // Notes what one sample of a pixel brought.
 void note(PixelSpread& spread, uint32_t pass, float brought) {
-  spread.sum += brought, spread.square += sqr(brought);
+  spread.sum += brought, spread.square += sqr(brought), ++spread.samples;
   ++spread.counts[pass % 2];
 }
 

@@ -175,7 +175,7 @@ void leave_out_merging(bool anew, RenderState& state) {
   state.plain.with_merging = set_aside(state);
   drop_passes(state.film);
   state.stats.ledger = {};
-  forget_sums(state.balance);
+  forget_sums(state.balance), forget_sums(state.adaptive);
 }
 
 // Path tracing that took over: its passes of the whole film are there to be held against the guided image, at no cost.

@@ -1,6 +1,7 @@
 // How many camera samples each pixel has in a pass, and what a pass is then.
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 
 #include "ajar/core/sampler.h"
 #include "ajar/scene/load.h"
@@ -27,9 +28,10 @@ Film lit_film() {
   return film;
 }
 
-PixelSpread spread_of(double variance) {
-  const float n = passes;
-  return {n * light, n * light * light + (n - 1) * float(variance), {passes / 2, passes / 2}};
+PixelSpread spread_of(double variance, uint32_t each = 1) {
+  const uint32_t all = passes * each;
+  const float n = float(all);
+  return {n * light, n * light * light + (n - 1) * float(variance), all, {all / 2, all / 2}};
 }
 
 struct Look {
@@ -38,8 +40,8 @@ struct Look {
 };
 
 // Lets samples of a pixel vary so much, and the image's halves differ by that and by what samples do not bring.
-void set(Look& look, int pixel, double variance, double found) {
-  look.adaptive.spread[size_t(pixel)] = spread_of(variance);
+void set(Look& look, int pixel, double variance, double found, uint32_t each = 1) {
+  look.adaptive.spread[size_t(pixel)] = spread_of(variance, each);
   look.film.half_sum[size_t(pixel)] = glm::dvec3(0.5 * (passes * double(light) + std::sqrt(passes * found)));
 }
 
@@ -99,6 +101,21 @@ TEST(Adaptive, NoiseThatNeighboursShareIsNotMended) {
   EXPECT_TRUE(all.adaptive.counts.empty());
 }
 
+// A part of it is in what samples vary by, but divided by their number.
+TEST(Adaptive, NoiseThatNeighboursShareIsTheSameWithMoreSamples) {
+  Look one = noisy_strip(0.001, 0.025), four = one;
+  constexpr double common = 0.001;
+  for (int i = 0; i < width * height; ++i) {
+    const double own = i % width < width - strip ? 0.001 : 0.025;
+    set(one, i, own + common, own + common);
+    set(four, i, own + common, own / 4 + common, 4);
+  }
+  share_noise(one, common), share_noise(four, common);
+  allot(one), allot(four);
+  EXPECT_GT(noisy_count(one), 1.5);
+  EXPECT_NEAR(noisy_count(four), noisy_count(one), 0.05 * noisy_count(one));
+}
+
 // The noise of a pixel's own samples is not its neighbour's.
 TEST(Adaptive, PassesShowWhatNeighboursShare) {
   Look own = noisy_strip(0.001, 0.025), shared = own;
@@ -116,7 +133,7 @@ TEST(Adaptive, PassesShowWhatNeighboursShare) {
   EXPECT_TRUE(shared.adaptive.counts.empty());
 }
 
-// What chooses the counts is not what they are judged by: a strip that varies by turns is as noisy as its surroundings.
+// What chooses the counts is not what they are judged by: pixels that are noisy alone are not those with samples.
 TEST(Adaptive, CountsAreJudgedByThePixelsOwnSamples) {
   Look look = noisy_strip(0.001, 0.025);
   allot(look);
@@ -171,7 +188,8 @@ TEST(Adaptive, OneFireflyIsNotWorthSamples) {
 // Squares of some lights have no place in a float.
 TEST(Adaptive, OneThatIsBrighterThanNumbersGoDoesNoHarm) {
   Look look = noisy_strip(0.001, 0.009);
-  look.adaptive.spread[10 * width + 36] = {1e18f, infinity, {passes / 2, passes / 2}};
+  for (const size_t pixel : {10 * width + 36, 15 * width + 36, 20 * width + 36})
+    look.adaptive.spread[pixel] = {1e18f, infinity, passes, {passes / 2, passes / 2}, 1e18f, infinity};
   allot(look);
   ASSERT_FALSE(look.adaptive.counts.empty());
   for (const uint8_t count : look.adaptive.counts) {
@@ -181,15 +199,28 @@ TEST(Adaptive, OneThatIsBrighterThanNumbersGoDoesNoHarm) {
   EXPECT_NEAR(noisy_count(look), 2.8, 0.5);
 }
 
+TEST(Adaptive, AnotherImageHasNumbersOfItsOwn) {
+  Look look = noisy_strip(0.001, 0.025);
+  allot(look);
+  const auto counts = look.adaptive.counts;
+  const uint32_t drawn = passes_drawn(look.film, look.adaptive);
+  forget_sums(look.adaptive);
+  EXPECT_EQ(passes_drawn(look.film, look.adaptive), drawn);
+  EXPECT_EQ(look.adaptive.passes, 0u);
+  for (const PixelSpread& s : look.adaptive.spread) EXPECT_EQ(std::tie(s.samples, s.sum, s.mean), std::tuple(0u, 0, 0));
+  allot(look);
+  EXPECT_EQ(look.adaptive.counts, counts) << "nothing is known of it";
+}
+
 TEST(Adaptive, APassAtWorkCountsByWhatIsDoneOfIt) {
   Film film = lit_film();
   Adaptive a;
   a.passes = 1, a.spread.resize(film.pixels());
-  for (PixelSpread& s : a.spread) s.counts[0] = 3;
+  for (PixelSpread& s : a.spread) s.samples = 3;
   EXPECT_EQ(samples_of_pass(film, a), 3);
   film.chunks = 1;
   for (int y = 0; y < tile; ++y)
-    for (int x = 0; x < tile; ++x) a.spread[size_t(y) * width + size_t(x)].counts[1] = 3;
+    for (int x = 0; x < tile; ++x) a.spread[size_t(y) * width + size_t(x)].samples += 3;
   EXPECT_NEAR(samples_of_pass(film, a), 3, 1e-12);
 }
 

@@ -135,33 +135,38 @@ TEST(Pools, PixelsOfATileHardlyErrTogether) {
 }
 
 // Irradiance (or importance) that camera (light) vertices see on average, as the cells know it. Cells of one size.
-double mean_total(const Fields& fields, Side side) {
+double mean_total(const std::vector<Fields>& renders, Side side) {
   double sum = 0, weights = 0;
-  for (const FieldCell& cell : fields.of(side).cells) sum += double(cell.visits * cell.total), weights += cell.visits;
+  for (const Fields& fields : renders)
+    for (const FieldCell& cell : fields.of(side).cells) sum += double(cell.visits * cell.total), weights += cell.visits;
   return sum / weights;
 }
 
 // The same of what their strata hold alone, without what next-event estimation (the lens) brings the cells themselves.
-double mean_of_strata(const Fields& fields, Side side) {
+double mean_of_strata(const std::vector<Fields>& renders, Side side) {
   double sum = 0, weights = 0;
-  for (const FieldCell& cell : fields.of(side).cells)
-    sum += double(cell.visits * (cell.total - cell.direct)), weights += cell.visits;
+  for (const Fields& fields : renders)
+    for (const FieldCell& cell : fields.of(side).cells)
+      sum += double(cell.visits * (cell.total - cell.direct)), weights += cell.visits;
   return sum / weights;
 }
 
-Fields learned(const Scene& scene, Structure structure, Rule rule) {
+// By three seeds, whose means differ by a tenth.
+std::vector<Fields> learned(const Scene& scene, Structure structure, Rule rule) {
   RenderOptions o = statistical("guided-bdpt");
   o.spp = 32, o.learn.structure = structure, o.learn.rule = rule;
   o.learn.memory = size_t(5) << 20;  // so few cells that all of them are visited
-  return rendered(scene, Accel(scene), o).learning.fields;
+  std::vector<Fields> out;
+  for (; out.size() < 3; ++o.seed) out.push_back(rendered(scene, Accel(scene), o).learning.fields);
+  return out;
 }
 
 TEST(Structures, LearnTheSame) {
   const Scene scene = room();
-  const Fields grid = learned(scene, Structure::grid, Rule::expected),
-               probes = learned(scene, Structure::probes, Rule::expected),
-               returned = learned(scene, Structure::grid, Rule::returned),
-               max = learned(scene, Structure::grid, Rule::max);
+  const auto grid = learned(scene, Structure::grid, Rule::expected),
+             probes = learned(scene, Structure::probes, Rule::expected),
+             returned = learned(scene, Structure::grid, Rule::returned),
+             max = learned(scene, Structure::grid, Rule::max);
   for (const Side side : {Side::camera, Side::light}) {
     const double truth = mean_total(grid, side);
     // Their cells end elsewhere, so that paths guided by them go to somewhat different places.

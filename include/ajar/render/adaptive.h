@@ -1,4 +1,5 @@
-// Enters: what the camera samples of a pixel brought, and how much they varied.
+// Enters: what the camera samples of a pixel brought, how much they varied, and what they had in common with those
+// beside them.
 // Leaves: how many of them each pixel is to have in a pass: more where the image is noisy.
 #pragma once
 
@@ -8,9 +9,10 @@
 
 namespace ajar {
 
-/// Sums over all camera samples of a pixel: luminance that one brings, filtered, without splats.
+/// Sums over the camera samples of a pixel: luminance that one brings, filtered, without splats.
 struct PixelSpread {
   float sum = 0, square = 0;
+  uint32_t samples = 0;
   uint32_t counts[2] = {0, 0};  ///< in even passes and odd ones: numbers of their sequences that are used up
   float mean = 0, beside = 0;   ///< over passes: of their means, and of these times those of the pixel to the right
 };
@@ -38,6 +40,8 @@ double samples_of_pass(const Film& film, const Adaptive& adaptive);
 uint32_t passes_drawn(const Film& film, const Adaptive& adaptive);
 /// Notes the pass whose image the film has, and is about to take in.
 void note_pass(const Film& film, Adaptive& adaptive);
+/// Of another image to come: its samples go on from the numbers that are used up.
+void forget_sums(Adaptive& adaptive);
 /// Chooses the counts anew. Does nothing while there are fewer than two passes, or where the film is black.
 void allot(const Film& film, Adaptive& adaptive);
 
