@@ -338,6 +338,7 @@ TEST(Plain, BalanceBeginsAnewWithTheImageThatDoesNotMerge) {
     if (now.plain.merged == 0) return true;
     ++looked;
     EXPECT_LE(now.balance.passes, now.film.passes);
+    EXPECT_LE(now.adaptive.passes, now.film.passes);
     return now.film.passes < 3;
   });
   EXPECT_GT(looked, 0u);

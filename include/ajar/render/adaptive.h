@@ -12,7 +12,7 @@ namespace ajar {
 /// Sums over the camera samples of a pixel: luminance that one brings, filtered, without splats.
 struct PixelSpread {
   float sum = 0, square = 0;
-  uint32_t samples = 0;
+  uint32_t samples = 0;         ///< that the sums are of
   uint32_t counts[2] = {0, 0};  ///< in even passes and odd ones: numbers of their sequences that are used up
   float mean = 0, beside = 0;   ///< over passes: of their means, and of these times those of the pixel to the right
 };
