@@ -3,6 +3,7 @@
 
 #include <ostream>
 #include <span>
+#include <vector>
 
 #include "ajar/path/prefix.h"
 #include "ajar/scene/scene.h"
@@ -19,6 +20,6 @@ struct Feature {
 };
 inline void PrintTo(const Feature& f, std::ostream* out) { *out << f.name; }
 
-std::span<const Feature> features();
+std::vector<Feature> features();
 
 }  // namespace ajar
