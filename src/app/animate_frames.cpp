@@ -31,6 +31,11 @@ struct Lessons {
   Counters counters;
 };
 
+// Whether its frames' fields are taught before they are rendered.
+bool is_taught(const Animation& a) {
+  return is_guided(a.options.integrator) && (a.sequence.coherence.fields || a.sequence.coherence.numbers);
+}
+
 std::string samples_text(const RenderState& state) { return fmt::format("{:.1f} spp", spp_of(state.film)); }
 
 // On a terminal one line that tells of the frame at work; else one for each that is finished.
@@ -43,8 +48,7 @@ void show(Animation& a, int frame, const std::string& what, bool finished) {
                                  a.to_do.size(), describe(a.shooting.timeline, frame), what, clock_text(now - a.began));
   if (a.done > 0 && size_t(a.done) < a.to_do.size())
     line += fmt::format("  {} left", clock_text((now - a.began) / a.done * double(a.to_do.size() - size_t(a.done))));
-  std::fprintf(stderr, terminal ? "\r%s\033[K" : "%s\n", line.c_str());
-  std::fflush(stderr);
+  put_line(std::move(line), false);
 }
 
 [[noreturn]] void interrupted(int frame) {
@@ -63,9 +67,17 @@ void write_frame(Animation& a, int frame, const Stage& stage, Run& run, const Re
   nlohmann::ordered_json record = summary(run, state);
   record["frame"] = frame;
   record["coherent"] = a.arguments.coherent;
-  write_text(fs::path(run.out_path).replace_extension(".json").string(), record_of(record));
-  write_exr(run.out_path, image, data,
-            a.arguments.half ? PixelType::half : PixelType::float32);  // last: a frame is done when its image is there
+  record["image_seed"] = image_seed(a.sequence, a.options.seed, uint32_t(frame));
+  const fs::path name = fs::path(run.out_path).replace_extension(".json");
+  write_text(name.string(), record_of(record));
+  // Last: a frame is done when its image is there.
+  try {
+    write_exr(run.out_path, image, data, a.arguments.half ? PixelType::half : PixelType::float32);
+  } catch (const Error&) {
+    std::error_code as_it_is;
+    fs::remove(name, as_it_is), fs::remove(frame_name(a.png, frame), as_it_is);
+    throw;
+  }
 }
 
 // What its record tells.
@@ -76,7 +88,7 @@ Run frame_run(const Animation& a, int frame, const Stage& stage) {
   run.at = time_at(a.shooting.timeline, frame);
   run.lenient = a.arguments.lenient;
   run.options = frame_options(a, frame, *stage.scene);
-  run.options.seed = image_seed(a.sequence, a.options.seed, uint32_t(frame));
+  if (is_taught(a)) run.taught = a.sequence;
   run.light_choice = usual_light_choice(run.options.integrator);
   run.threads = a.options.threads > 0 ? a.options.threads : processor_count();
   run.load_seconds = stage.load_seconds, run.load_cpu = stage.load_cpu;
@@ -87,12 +99,14 @@ Run frame_run(const Animation& a, int frame, const Stage& stage) {
 // Renders one frame.
 void render_frame(Animation& a, int frame, const Stage& stage, const Lessons& lessons) {
   Run run = frame_run(a, frame, stage);
+  RenderOptions options = run.options;
+  options.seed = image_seed(a.sequence, a.options.seed, uint32_t(frame));
   RenderState state =
-      a.carried ? start_with(*stage.scene, run.options, a.carried->fields) : start_render(*stage.scene, run.options);
+      a.carried ? start_with(*stage.scene, options, a.carried->fields) : start_render(*stage.scene, options);
   state.stats.seconds = state.stats.learn_seconds = lessons.seconds;
   state.stats.cpu_seconds = state.stats.learn_cpu_seconds = lessons.cpu_seconds;
   state.stats.counters = lessons.counters;
-  render(*stage.scene, *stage.accel, without_start(run.options, run), state, [&](const RenderState& s) {
+  render(*stage.scene, *stage.accel, without_start(options, run), state, [&](const RenderState& s) {
     show(a, frame, samples_text(s), false);
     return !stop_asked();
   });
@@ -178,7 +192,7 @@ void tell_learned_again(const Animation& a, int frame) {
 }  // namespace
 
 void render_frames(Animation& a) {
-  const bool taught = is_guided(a.options.integrator) && (a.sequence.coherence.fields || a.sequence.coherence.numbers);
+  const bool taught = is_taught(a);
   std::optional<Stage> before;
   const int count = a.shooting.timeline.frames.count;
   int frame = a.to_do.front();

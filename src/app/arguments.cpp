@@ -116,6 +116,9 @@ std::string place_of(const std::string& path) {
   return place.empty() ? path : place.string();
 }
 
-bool is_same_file(const std::string& a, const std::string& b) { return place_of(a) == place_of(b); }
+bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code unknown;  // one that is not there is no other's
+  return place_of(a) == place_of(b) || std::filesystem::equivalent(a, b, unknown);
+}
 
 }  // namespace ajar

@@ -50,8 +50,7 @@ struct Line {
     next = now + (terminal ? 0.25 : 60);
     std::string line = fmt::format("{:5.1f} %  {}", 100 * p.share, p.what);
     if (p.left < infinity) line += fmt::format("  {} left", clock_text(p.left));
-    std::fprintf(stderr, terminal ? "\r%s\033[K" : "%s\n", line.c_str());
-    std::fflush(stderr);
+    put_line(std::move(line), false);
   }
   void clear() const {
     if (shown) clear_line();

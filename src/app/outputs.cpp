@@ -131,11 +131,15 @@ Picture image_of(const RenderArguments& a, const Scene& scene, const Accel& acce
   }
 }
 
-// Whether the last line was cut, by a disk that was full, say.
-bool is_cut(const std::string& path) {
-  if (!is_file(path)) return false;
-  std::ifstream file(path, std::ios::binary);
-  return file.seekg(-1, std::ios::end) && file.get() != '\n';
+// Takes away what follows the last whole line: one that was cut, by a disk that was full, say.
+void drop_cut_line(const std::string& path) {
+  if (!is_file(path)) return;
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  std::streamoff end = file.tellg();
+  const auto is_whole = [&] { return file.seekg(end - 1) && file.get() == '\n'; };
+  while (end > 0 && !is_whole()) --end;
+  std::error_code as_it_is;
+  std::filesystem::resize_file(path, uintmax_t(std::max(end, std::streamoff(0))), as_it_is);
 }
 
 }  // namespace
@@ -157,6 +161,7 @@ void Log::write(const RenderState& state, bool last) {
   if (file << waiting << std::flush) return waiting.clear();
   fault = fmt::format("{}: cannot be written ({}); the log ends there", path, std::strerror(errno));
   file.close();
+  drop_cut_line(path);
 }
 
 Picture read_reference(const std::string& path, const Camera& camera) {
@@ -180,12 +185,11 @@ Log open_log(const RenderArguments& a, std::optional<Picture> reference) {
   log.reference = std::move(reference);
   if (a.log.empty()) return log;
   make_folder_of(a.log);
-  const bool cut = !a.resume.empty() && is_cut(a.log);
+  if (!a.resume.empty()) drop_cut_line(a.log);
   std::error_code error;
   log.spares = a.resume.empty() && is_file(a.log) && std::filesystem::file_size(a.log, error) > 0 && !error;
   log.file.open(a.log, a.resume.empty() && !log.spares ? std::ios::out : std::ios::app);
   if (!log.file) throw Error(fmt::format("--log {}: cannot be written ({})", a.log, std::strerror(errno)));
-  if (cut) log.file << '\n';
   return log;
 }
 

@@ -1,6 +1,7 @@
 #include "progress.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -35,11 +36,31 @@ void print(const Progress& progress, double share, const RenderState& state, boo
   if (!last && share > 0) line += fmt::format("  {} left", clock_text(elapsed * (1 - share) / share));
   if (const ErrorEstimate& e = progress.error; e.relmse < infinity)  // a single firefly may be most of the second
     line += fmt::format("  relMSE ~ {:.3g} ({:.3g} of all)", e.relmse_trimmed, e.relmse);
-  std::fprintf(stderr, progress.terminal ? (last ? "\r%s\033[K\n" : "\r%s\033[K") : "%s\n", line.c_str());
-  std::fflush(stderr);
+  put_line(std::move(line), last);
+}
+
+// Characters in a row of the terminal; 0 if it does not say.
+size_t columns() {
+  winsize size{};
+  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+}
+
+// A line that goes on in a second row could not be taken back.
+void cut_to(std::string& line, size_t most) {
+  const auto goes_on = [](char c) { return (c & 0xc0) == 0x80; };  // of UTF-8
+  size_t characters = 0;
+  for (size_t i = 0; i < line.size(); ++i)
+    if (!goes_on(line[i]) && ++characters > most) return line.resize(i);
 }
 
 }  // namespace
+
+void put_line(std::string line, bool last) {
+  const bool terminal = isatty(STDERR_FILENO);
+  if (const size_t row = terminal && !last ? columns() : 0; row > 1) cut_to(line, row - 1);
+  std::fprintf(stderr, terminal ? (last ? "\r%s\033[K\n" : "\r%s\033[K") : "%s\n", line.c_str());
+  std::fflush(stderr);
+}
 
 void clear_line() {
   if (isatty(STDERR_FILENO)) std::fputs("\r\033[K", stderr);

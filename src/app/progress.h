@@ -19,6 +19,9 @@ struct Progress {
 
 /// Takes the line away where stderr is a terminal, so that another can stand in its place.
 void clear_line();
+/// Puts a line on standard error: in place of the last one where that is a terminal, as much of it as fits in a row.
+/// last: all of it, and what follows begins below.
+void put_line(std::string line, bool last);
 /// "12.3 s", "4:05", "1:02:03".
 std::string clock_text(double seconds);
 Progress make_progress(bool quiet);

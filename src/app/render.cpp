@@ -71,10 +71,21 @@ bool is_of_another(const std::string& path, const std::string& goes_on_from) {
   return !path.empty() && is_there(path) && (goes_on_from.empty() || !is_same_file(path, goes_on_from));
 }
 
+bool is_checkpoint(const std::string& path) {
+  try {
+    read_checkpoint_key(path);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 // A checkpoint of an earlier render that would be lost.
 void note_checkpoint(const RenderArguments& a) {
   if (a.quiet || !is_of_another(a.checkpoint, a.resume)) return;
-  say(stderr, "ajar: note: {} is begun anew; --resume {} would go on from it\n", a.checkpoint, a.checkpoint);
+  say(stderr, "ajar: note: {} is begun anew{}\n", a.checkpoint,
+      is_checkpoint(a.checkpoint) ? fmt::format("; --resume {} would go on from it", a.checkpoint)
+                                  : ", though it holds no checkpoint of this version");
 }
 
 bool has_samples(const Film& film) { return film.passes > 0 || film.chunks > 0; }

@@ -10,8 +10,9 @@
 
 namespace ajar {
 
-/// Before anything else: a reader that has gone and a limit on the size of files become errors of writing, where they
-/// would end the program without a word; and no file that is opened takes the place of a stream that was closed.
+/// Before anything else: Ctrl-C is heard, which shells have what scripts leave to the background ignore; a reader that
+/// has gone and a limit on the size of files become errors of writing, where they would end the program without a word;
+/// and no file that is opened takes the place of a stream that was closed.
 void guard_streams();
 
 /// Never throws, as fmt::print does where a pipe is broken. Standard output is looked at once more at the end.

@@ -32,7 +32,7 @@ void catch_unless_ignored(int signal) {
 }  // namespace
 
 void catch_stop() {
-  std::signal(SIGINT, ask);  // in any case: shells ignore it for all that scripts leave to the background
+  std::signal(SIGINT, ask);
   catch_unless_ignored(SIGTERM);
   catch_unless_ignored(SIGHUP);  // nohup
 }

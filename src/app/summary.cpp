@@ -51,6 +51,8 @@ nlohmann::ordered_json options_json(const Run& run, const Film& film) {
   j["field_rule"] = rule_names[size_t(o.learn.rule)];
   j["field_rate"] = o.learn.forget == 1 ? "visits" : "recent";
   j["train"] = o.learn.train;
+  if (run.taught) j["teach"] = run.taught->teach;
+  if (run.taught && run.taught->coherence.fields) j["forget"] = run.taught->forget;
   if (!run.load_fields.empty()) j["load_fields"] = run.load_fields;
   if (!run.save_fields.empty()) j["save_fields"] = run.save_fields;
   return j;
@@ -124,7 +126,7 @@ Metadata metadata(const Run& run, const RenderState& state) {
   return {{"ajar:version", std::string(version)},
           {"ajar:scene", run.scene_path},
           {"ajar:options", text_of(options_json(run, state.film), -1)},
-          {"ajar:seed", double(run.options.seed)},
+          {"ajar:seed", fmt::to_string(run.options.seed)},
           {"ajar:spp", spp_of(state.film)},
           {"ajar:seconds", state.stats.seconds},
           {"ajar:cpu_seconds", state.stats.cpu_seconds}};

@@ -8,6 +8,7 @@
 
 #include "ajar/film/picture.h"
 #include "ajar/render/plan.h"
+#include "ajar/render/sequence.h"
 #include "versus.h"
 
 namespace ajar {
@@ -22,6 +23,7 @@ struct Run {
   std::string light_choice;              ///< of light_choice_names
   std::string load_fields, save_fields;  ///< files, empty: none
   RenderOptions options;
+  std::optional<SequenceOptions> taught;  ///< how, of a frame whose fields are taught before it is rendered
   double load_seconds = 0, build_seconds = 0, beside_seconds = 0, write_seconds = 0;
   double load_cpu = 0, build_cpu = 0, beside_cpu = 0, write_cpu = 0;  ///< beside: log and checkpoints meanwhile
   uint64_t triangles = 0, accel_bytes = 0;

@@ -73,7 +73,7 @@ FrameRange parse_frames(const std::string& written, int count) {
   }
   if (keyed > 0 && count != keyed) throw wrong(fmt::format("the keyframes say {}; write that, or leave it out", keyed));
   if (is_range && count == 0)
-    throw wrong(fmt::format("how many are there in all? Write {}/48 for a part of 48", written));
+    throw wrong(fmt::format("how many are there in all? Write {}-{}/48 for a part of 48", r.first, r.last));
   if (count < 1 || count > most_frames) throw wrong(fmt::format("an animation has from 1 to {} frames", most_frames));
   if (r.first > r.last) throw wrong("the first frame comes after the last");
   if (r.last >= count) throw wrong(fmt::format("{} frames are numbered from 0 to {}", count, count - 1));

@@ -206,6 +206,7 @@ void check_file(const std::string& path) {
     if (::access(path.c_str(), W_OK) != 0) fail(path, errno);
     return;
   }
+  if (place.mode && ::access(place.target.c_str(), W_OK) != 0) fail(path, errno);
   try_out(path, place.target);
 }
 

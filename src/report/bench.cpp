@@ -270,7 +270,7 @@ void claim_folder(const Bench& bench) {
   Json key = to_json(bench.suite);
   key["version"] = bench.options.version, key["build"] = bench.options.build;
   key["threads"] = machine_json(bench.options.threads)["threads"];
-  if (!is_there(path.string())) {
+  if (!is_there(path.string()) || !is_there((bench.options.folder / "runs").string())) {
     make_folder(folder);
     write_text(path.string(), text_of(key, 1) + "\n");
     return;
@@ -295,6 +295,8 @@ void check_outputs(const Bench& bench) {
   const fs::path& folder = bench.options.folder;
   for (const char* name : {"results.json", "results.csv", "report.html", "curves.svg"})
     check_file((folder / name).string());
+  for (const Stand& stand : bench.stands)
+    if (!stand.reference && stand.scene->missing.empty()) check_folder(bench.options.references.string());
   for (const Stand& stand : bench.stands)
     if (stand.scene->missing.empty())
       for (const char* kind : {"runs", "images"}) check_folder((folder / kind / stand.scene->name).string());
@@ -332,8 +334,8 @@ void run_scene(Bench& bench, Stand& stand) {
 Json run_bench(const Suite& suite, const BenchOptions& options) {
   Bench bench{suite, options};
   for (const BenchScene& scene : suite.scenes) bench.stands.push_back(make_stand(bench, scene));
-  claim_folder(bench);
   check_outputs(bench);
+  claim_folder(bench);
   make_references(bench);
   for (const Stand& stand : bench.stands)
     for (const Method& method : suite.methods)

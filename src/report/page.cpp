@@ -12,6 +12,7 @@
 #include "ajar/core/files.h"
 #include "ajar/film/picture.h"
 #include "ajar/report/curves.h"
+#include "ajar/report/json.h"
 #include "markup.h"
 #include "pack.h"
 #include "page_parts.h"
@@ -162,8 +163,8 @@ void write_report(const json& results, const std::filesystem::path& dir) {
     title = results.value("title", "");
     embedded = embed(results, dir);
     curves = curves_svg(results);
-  } catch (const json::exception& error) {
-    throw Error(fmt::format("{}: is not what a bench writes ({}); run the bench again", file, error.what()));
+  } catch (const json::exception&) {
+    throw Error(fmt::format("{}: is not what a bench writes; run the bench again", file));
   }
   write_text((dir / "report.html").string(),
              filled(page::html, {{"title", escaped(title)},
@@ -185,11 +186,7 @@ json read_results(const std::filesystem::path& dir) {
   if (!std::filesystem::is_regular_file(path, none_such))
     throw Error(fmt::format("{}: {}; name the folder that ajar bench wrote", path.string(),
                             none_such ? none_such.message() : "is no file"));
-  try {
-    return json::parse(read_bytes(path));
-  } catch (const json::exception& error) {
-    throw Error(fmt::format("{}: is no JSON ({}); run the bench again", path.string(), error.what()));
-  }
+  return read_json(path, "run the bench again");
 }
 
 }  // namespace ajar

@@ -213,6 +213,19 @@ TEST_F(Animate, RaysOfLessonsCount) {
   EXPECT_GT(rays("16"), 2 * rays("1"));
 }
 
+// What a frame was made with, as it was typed: its image's seed is another.
+TEST_F(Animate, RecordsHoldWhatTheCommandAskedFor) {
+  run("2", "out",
+      {"--integrator", "guided-bdpt", "--coherent", "fields", "--seed", "7", "--teach", "2", "--forget", "0.5"});
+  std::ifstream file(in("out/f_01.json"));
+  const nlohmann::json record = nlohmann::json::parse(file), options = record["options"];
+  EXPECT_EQ(options["seed"], 7);
+  EXPECT_EQ(options["teach"], 2);
+  EXPECT_EQ(options["forget"], 0.5);
+  EXPECT_NE(record["image_seed"], 7) << "each frame has numbers of its own";
+  EXPECT_EQ(std::get<std::string>(read_metadata(in("out/f_01.exr")).at("ajar:seed")), "7");
+}
+
 TEST_F(Animate, ADamagedFileOfFieldsIsLearnedAgain) {
   run("3", "out");
   const std::vector<float> last = pixels("out/f_02.exr");

@@ -43,6 +43,14 @@ TEST_F(Bench, AFolderOfAnotherSuiteIsRefused) {
   EXPECT_EQ(error_of(other), "");
 }
 
+TEST_F(Bench, AFolderWithoutRunsIsFree) {
+  run(small());
+  fs::remove_all(options.folder / "runs");
+  Json other = small();
+  other["seeds"] = 3;
+  EXPECT_EQ(error_of(other), "");
+}
+
 // Whoever goes on elsewhere, or leaves out --threads, would mix the times of one machine with those of another.
 TEST_F(Bench, OtherThreadsAreRefused) {
   run(small());
