@@ -244,11 +244,20 @@ void drop_idle_alpha(Image& image) {
   }
 }
 
+// OpenImageIO's reader of icons may end the program where one is damaged.
+bool is_icon(const std::string& path) {
+  constexpr char mark[] = {0, 0, 1, 0};
+  char begin[sizeof mark] = {1};
+  std::ifstream(path, std::ios::binary).read(begin, sizeof begin);
+  return std::equal(begin, begin + sizeof begin, mark);
+}
+
 }  // namespace
 
 Image load_image(const std::string& path, const ImageOptions& options) {
   require_readable(path);
   check_png(path);
+  if (is_icon(path)) throw Error(fmt::format("{}: icons are not read; convert it to PNG", path));
   OIIO::ImageSpec config;
   config.attribute("oiio:UnassociatedAlpha", 1);  // colours as they are stored
   const auto input = OIIO::ImageInput::open(path, &config);

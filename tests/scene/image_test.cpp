@@ -222,6 +222,18 @@ TEST_F(ImageFile, DamagedFilesAreErrors) {
 }
 
 // Checksums tell, before libpng writes to standard error.
+TEST_F(ImageFile, IconsAreRefused) {
+  const std::string path = (folder / "a.ico").string();
+  std::ofstream(path, std::ios::binary) << std::string("\0\0\1\0\1\0", 6) + std::string(40, 'x');
+  std::string what;
+  try {
+    load_image(path);
+  } catch (const Error& e) {
+    what = e.what();
+  }
+  EXPECT_EQ(what, path + ": icons are not read; convert it to PNG");
+}
+
 TEST_F(ImageFile, DamagedPngsAreErrorsOfOneLine) {
   const std::vector<uint8_t> grey(64 * 64 * 3, 77);
   const std::string path = write("a.png", 64, 64, 3, OIIO::TypeDesc::UINT8, grey);

@@ -28,6 +28,8 @@ double area(const Scene& scene, uint32_t shape);
 float triangle_area(const Mesh& mesh, uint32_t triangle);
 /// Whether axes stay equal in length and at right angles, to a share of their length.
 bool is_similarity(const glm::dmat4& m, double tolerance = 1e-4);
+/// By how much a turn may be off that was written with three decimals.
+inline constexpr double off_by_rounding = 2e-3;
 /// (u, v) of a point of a sphere, as hits have them: u = azimuth / (2 pi) about the object's z, v = polar angle / pi.
 Vec2 sphere_uv(const Shape& sphere, const Vec3& p);
 /// Vertices, normal and error of a triangle, computed afresh.

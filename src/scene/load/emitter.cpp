@@ -141,7 +141,7 @@ void spot(Params& p) {
   light.beam = float(glm::radians(beam));
   project_texture(p, cutoff, light);
   const DMat4 m = regular_to_world(p);
-  if (!is_similarity(m))
+  if (!is_similarity(m, off_by_rounding))
     unsupported(p.loader, p.node, "its to_world stretches its cone: turn, move and scale alone", "round in its place");
   put(p, m, light);
   light.direction = Vec3(checked_direction(p.loader, p.node, DVec3(m[2])));
@@ -175,7 +175,8 @@ void projector(Params& p) {
   const double x = tan_half_x(p, camera);
   light.plane = Vec2(float(x), float(x * camera.height / camera.width));
   const DMat4 m = regular_to_world(p);
-  if (!is_similarity(m)) fail(p.loader, p.node, "its to_world should not stretch: turn, move and scale alone");
+  if (!is_similarity(m, off_by_rounding))
+    fail(p.loader, p.node, "its to_world should not stretch: turn, move and scale alone");
   put(p, m, light);
   light.direction = Vec3(light.to_world[2]);
   add(p, std::move(light));

@@ -133,6 +133,8 @@ void load_child(Loader& loader, const Node& node, bool& has_integrator) {
     check_texture(loader, node);  // read where it is named: only then is it known what its numbers stand for
   } else if (node.tag == "ref") {
     follow(loader, node);  // what it names is in the scene already
+  } else if (node.tag == "null") {
+    // nothing, of version 0.x
   } else if (is_definition(node)) {
     // read where it is named
   } else if (node.name.empty() || !node.children.empty()) {

@@ -100,6 +100,21 @@ struct HeaderReader {
   }
 };
 
+// Texture coordinates by the first of these names that are there, as in Mitsuba.
+void choose_uvs(PlyElement& e) {
+  bool found = false;
+  for (const auto& [u, v] : {std::pair("u", "v"), {"texture_u", "texture_v"}, {"s", "t"}}) {
+    const auto named = [&](const char* name) {
+      return [name](const PlyProperty& p) { return p.name == name && !p.length; };
+    };
+    const auto at_u = std::find_if(e.properties.begin(), e.properties.end(), named(u));
+    const auto at_v = std::find_if(e.properties.begin(), e.properties.end(), named(v));
+    if (at_u == e.properties.end() || at_v == e.properties.end()) continue;
+    if (found) at_u->role = at_v->role = role_other;
+    found = true;
+  }
+}
+
 const PlyProperty* scalar(const PlyElement& e, size_t i) {
   return i < e.properties.size() && !e.properties[i].length ? &e.properties[i] : nullptr;
 }
@@ -131,6 +146,7 @@ PlyHeader read_ply_header(const char*& p, const char* end, const std::string& fi
     }
   }
   if (!has_format) in.fail("no format line");
+  for (PlyElement& e : header.elements) choose_uvs(e);
   p = in.p;
   return header;
 }

@@ -69,6 +69,14 @@ void simple_mesh(Params& p, Shape& shape, Mesh&& mesh, const DMat4& m) {
   shape.mesh = add_mesh(p, std::move(mesh));
 }
 
+// Axes at right angles, of one length, where those given are so but for rounding.
+DMat4 squared_up(const DMat4& m) {
+  const double size = std::cbrt(std::abs(determinant(m)));
+  const DVec3 x = glm::normalize(DVec3(m[0])), y = glm::normalize(DVec3(m[1]) - x * glm::dot(x, DVec3(m[1])));
+  const DVec3 z = determinant(m) < 0 ? glm::cross(y, x) : glm::cross(x, y);
+  return DMat4(DMat4::col_type(size * x, 0), DMat4::col_type(size * y, 0), DMat4::col_type(size * z, 0), m[3]);
+}
+
 void sphere(Params& p, Shape& shape, const MeshPart&) {
   const Node* at = find(p, {"center"});
   DVec3 center = at == nullptr ? DVec3(0) : vector_of(p.loader, *at, 0);
@@ -80,17 +88,17 @@ void sphere(Params& p, Shape& shape, const MeshPart&) {
   const DMat4 m = placed * local;
   check_invertible(p.loader, p.node, m);
   const bool mirrored = !p.loader.document.old && determinant(m) < 0;
-  if (!is_similarity(m)) {
+  if (!is_similarity(m, off_by_rounding)) {
     note(p.loader, p.node,
-         fmt::format("to_world makes an ellipsoid of it: rendered as a mesh of {} x {} cells", sphere_rings,
-                     sphere_segments));
+         fmt::format("to_world makes an ellipsoid of it: rendered as a mesh of {} x {} cells (Mitsuba's stays round)",
+                     sphere_rings, sphere_segments));
     simple_mesh(p, shape, make_sphere(sphere_rings, sphere_segments), m);
     if (mirrored) turn(p.loader.scene.meshes[shape.mesh]);
     return;
   }
   shape.kind = ShapeKind::sphere;
   shape.flip = boolean(p, "flip_normals", false) != mirrored;
-  place_quadric(p, shape, m);
+  place_quadric(p, shape, squared_up(m));
 }
 
 void disk(Params& p, Shape& shape, const MeshPart&) {

@@ -130,7 +130,14 @@ Sky make_sky(const Daylight& day) {
 // luminosity function, 106.857 nm.
 constexpr double per_kilocandela = 1000 / (683 * 106.857);
 
+// Of what is seen at the horizon, so much is left where an extended sky goes on below it, as Mitsuba 0.6 has it.
+double below_horizon(const DVec3& w) {
+  const double t = std::clamp(2 - 2 * std::acos(std::clamp(w.y, -1.0, 1.0)) / std::numbers::pi, 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
 Rgb radiance(const Sky& sky, DVec3 w) {
+  const double fades = sky.day.extend ? below_horizon(w) : 1;
   if (sky.day.stretch != 1) w = at_zenith_distance(w, std::acos(std::clamp(w.y, -1.0, 1.0)) / sky.day.stretch);
   if (!(w.y > 0) && sky.day.extend) w = at_zenith_distance(w, std::acos(1e-4));
   if (!(w.y > 0)) return Rgb(0);
@@ -139,10 +146,10 @@ Rgb radiance(const Sky& sky, DVec3 w) {
   for (int i = 0; i < 3; ++i) v[i] = sky.scale[i] * perez(sky.of[i], cos_zenith, gamma);
   const double Y = std::max(v[0], 0.0) * per_kilocandela, y = std::max(v[2], 1e-3);
   const DVec3 xyz(v[1] / y * Y, Y, (1 - v[1] - v[2]) / y * Y);
-  return Rgb(glm::max(DVec3(3.2404542 * xyz.x - 1.5371385 * xyz.y - 0.4985314 * xyz.z,
-                            -0.9692660 * xyz.x + 1.8760108 * xyz.y + 0.0415560 * xyz.z,
-                            0.0556434 * xyz.x - 0.2040259 * xyz.y + 1.0572252 * xyz.z),
-                      DVec3(0)));
+  return float(fades) * Rgb(glm::max(DVec3(3.2404542 * xyz.x - 1.5371385 * xyz.y - 0.4985314 * xyz.z,
+                                           -0.9692660 * xyz.x + 1.8760108 * xyz.y + 0.0415560 * xyz.z,
+                                           0.0556434 * xyz.x - 0.2040259 * xyz.y + 1.0572252 * xyz.z),
+                                     DVec3(0)));
 }
 
 // Absorption of ozone [1/cm], every 10 nm from 450 (Iqbal 1983, as in appendix A.1).

@@ -79,11 +79,16 @@ List pairs_of_file(Loader& loader, const Node& node, const std::string& name) {
   List list;
   std::istringstream lines{std::string(without_mark(read_text(path)))};
   int number = 0;
+  bool more = false;
   for (std::string line; std::getline(lines, line);) {
     ++number;
     line.erase(std::min(line.find('#'), line.size()));
     const auto pair = to_numbers(line);
-    if (!pair || (!pair->empty() && pair->size() != 2))
+    if (pair && pair->size() > 2 && !more) {
+      more = true;
+      note(loader, node, fmt::format("{}:{}: a wavelength and a value are read of each line", path, number));
+    }
+    if (!pair || pair->size() == 1)
       fail(loader, node,
            fmt::format("{}:{}: \"{}\" should be a wavelength and a value", path, number, shortened(line)));
     if (!pair->empty()) list.emplace_back((*pair)[0], (*pair)[1]);
@@ -91,11 +96,20 @@ List pairs_of_file(Loader& loader, const Node& node, const std::string& name) {
   return list;
 }
 
+// Mitsuba 0.x lets a list fall to zero over what its wavelengths are apart in the mean.
+void let_fall(List& list) {
+  std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  const double step = (list.back().first - list.front().first) / double(list.size() - 1);
+  if (list.front().second != 0) list.insert(list.begin(), {list.front().first - step, 0});
+  if (list.back().second != 0) list.emplace_back(list.back().first + step, 0);
+}
+
 // In version 0.x surfaces are seen under equal energy too.
 Rgb of_list(Loader& loader, const Node& node, List list, Colour kind) {
   if (list.empty()) fail(loader, node, "holds no wavelengths");
   for (const auto& [nm, x] : list)
     if (!(nm > 0 && nm < 1e6) || !(std::abs(x) < 1e30)) fail(loader, node, fmt::format("{}:{} is out of range", nm, x));
+  if (loader.document.old && list.size() > 1) let_fall(list);
   const bool bright = std::any_of(list.begin(), list.end(), [](const auto& pair) { return pair.second > 0; });
   const Rgb c = rgb_of_list(std::move(list), loader.document.old ? Colour::emission : kind);
   if (bright && is_black(c))

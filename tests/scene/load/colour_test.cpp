@@ -78,6 +78,22 @@ TEST(Colour, EqualEnergyLightIsWarm) {  // E in sRGB: XYZ (1, 1, 1)
   EXPECT_RGB(radiance(flat("300:1, 900:1")), 1.2048, 0.9484, 0.9087, 4e-3);
 }
 
+// Zero outside; in Mitsuba 0.x at the mean distance of the wavelengths.
+TEST(Colour, ListsEnd) {
+  const auto light = [](const std::string& list, const std::string& version) {
+    return load_inside("<emitter type='constant'><spectrum name='radiance' value='" + list + "'/></emitter>", {},
+                       version)
+        .lights[0]
+        .radiance.value;
+  };
+  EXPECT_RGB(light("500:1, 600:1", "3.0.0"), 0.269, 0.989, 0, 2e-3);
+  EXPECT_RGB(light("500:1, 600:1", "0.6.0"), 0.920, 1.008, 0.417, 2e-3);
+  EXPECT_EQ(light("600:1, 500:1", "0.6.0"), light("400:0, 500:1, 600:1, 700:0", "0.6.0"));
+  EXPECT_EQ(light("400:0, 500:1, 600:0", "0.6.0"), light("400:0, 500:1, 600:0", "0.5.0"));
+  const std::string wide = write_file("wide.spd", "300 0.5 7\n900 0.5 7\n");
+  EXPECT_RGB(reflectance("<spectrum name='reflectance' filename='" + wide + "'/>"), 0.5, 0.5, 0.5, 1e-6);
+}
+
 // As the list that it stands for, as in Mitsuba 3, whose documents tell of it; white in version 0.x.
 TEST(Colour, NumberInASpectrumIsAFlatLight) {
   const auto light = [](const std::string& type, const std::string& inside, const std::string& version = "3.0.0") {

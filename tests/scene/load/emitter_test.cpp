@@ -119,6 +119,12 @@ TEST(Emitters, Spot) {
   EXPECT_SAYS(error_of(emitter("spot", "<float name='beam_width' value='30'/>")), "beam_width");
   const std::string wide = emitter("spot", "<transform name='to_world'><scale x='2'/></transform>");
   EXPECT_SAYS(error_of(wide), "its to_world stretches its cone");
+  for (const char* type : {"spot", "projector"})  // turns of three decimals are turns
+    EXPECT_EQ(load_inside(emitter(type,
+                                  "<transform name='to_world'><matrix value='0.707 0 0.707 0 0 1 0 0 -0.707 0 "
+                                  "0.707 2 0 0 0 1'/></transform>"))
+                  .lights.size(),
+              1u);
   EXPECT_EQ(load_inside(wide, lenient()).lights.size(), 1u);
   for (const auto& [type, slot] : {std::pair("spot", "texture"), std::pair("projector", "irradiance")})
     EXPECT_SAYS(error_of(emitter(type, "<texture name='" + std::string(slot) +
@@ -226,7 +232,17 @@ TEST(Emitters, SunAndSky) {
   };
   EXPECT_EQ(below(""), 0);
   EXPECT_GT(below("<float name='stretch' value='2'/>"), 0);
-  EXPECT_GT(below("<boolean name='extend' value='true'/>"), 0);
+  const auto extended = [](float y) {  // at this height, by the horizon
+    const Scene s = old(emitter("sky",
+                                "<vector name='sunDirection' value='0 1 1'/><boolean name='extend' "
+                                "value='true'/><integer name='resolution' value='1024'/>"));
+    const auto at = [&](float height) {
+      return luminance(environment(s, 0, glm::normalize(Vec3(std::sqrt(1 - height * height), height, 0))));
+    };
+    return at(y) / at(-0.01f);
+  };
+  EXPECT_NEAR(extended(-std::sqrt(0.5f)), 0.5f, 0.01f);
+  EXPECT_NEAR(extended(-std::sin(glm::radians(67.5f))), 0.156f, 0.01f);
   EXPECT_NEAR(read_old("sun", high + "<float name='stretch' value='1.5'/>").direction.y, -std::cos(glm::radians(67.5f)),
               1e-5f);
   EXPECT_SAYS(kit::error_of([&] { old(emitter("sky", high + "<float name='stretch' value='3'/>")); }),
@@ -295,7 +311,8 @@ TEST(Emitters, ScaleOfSunsky) {
               s = old(emitter("sunsky", sun_at("0 1 1") + scaled("scale", "2") + scaled("skyScale", "3")));
   EXPECT_NEAR(power(s, 0) / power(one, 0), 3, 1e-4);
   EXPECT_NEAR(power(s, 1) / power(one, 1), 2, 1e-4);
-  EXPECT_TRUE(says(load_inside(emitter("sky", scaled("albedo_of_ground", "2"))).notes, "\"albedo_of_ground\" is not used"));
+  EXPECT_TRUE(
+      says(load_inside(emitter("sky", scaled("albedo_of_ground", "2"))).notes, "\"albedo_of_ground\" is not used"));
 }
 
 TEST(Emitters, UnknownOnesInShapes) {

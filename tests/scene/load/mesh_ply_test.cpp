@@ -53,6 +53,14 @@ TEST(MeshPly, every_spelling_of_uv_and_colour) {
     EXPECT_EQ(ply(ascii(vertex, one_face, body)).uvs[0], Vec2(0.25f, 0.75f));
     EXPECT_EQ(ply(ascii(vertex, one_face, body), {.flip_v = true}).uvs[0], Vec2(0.25f, 0.25f));
   }
+  for (const char* first : {"u", "s"}) {  // where there are several, u and v count
+    std::string vertex = xyz;
+    for (const std::string name :
+         first == std::string("u") ? std::array{"u", "v", "s", "t"} : std::array{"s", "t", "u", "v"})
+      vertex += "property float " + name + "\n";
+    const Mesh m = ply(ascii(vertex, one_face, "0 0 0 1 2 3 4\n1 0 0 1 2 3 4\n0 1 0 1 2 3 4\n3 0 1 2\n"));
+    EXPECT_EQ(m.uvs[0], first == std::string("u") ? Vec2(1, 2) : Vec2(3, 4));
+  }
   const std::string body = "0 0 0 255 51 0\n1 0 0 0 0 0\n0 1 0 0 0 0\n3 0 1 2\n";
   const std::string bytes = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
   EXPECT_EQ(ply(ascii(xyz + bytes, one_face, body)).colors[0], Rgb(1, 0.2f, 0));

@@ -40,7 +40,7 @@ TEST(Shapes, Sphere) {
 TEST(Shapes, MirroredEllipsoidsAreTurnedAsSpheresAre) {
   const auto faces_out = [](const std::string& inside, const char* version) {
     const Scene s = load_inside(
-        shape("sphere", "<transform name='toWorld'><scale x='-1' z='1.001'/></transform>" + inside), {}, version);
+        shape("sphere", "<transform name='toWorld'><scale x='-1' z='1.01'/></transform>" + inside), {}, version);
     const Mesh& mesh = s.meshes.at(0);
     const glm::uvec3& t = mesh.triangles[mesh.triangles.size() / 2];
     const bool out = glm::dot(normal(mesh, mesh.triangles.size() / 2), mesh.positions[t.x]) > 0;
@@ -73,6 +73,22 @@ TEST(Shapes, SpheresOfOldScenes) {
   EXPECT_FALSE(load_inside(shape("sphere", mirror + flip)).shapes[0].flip);
   for (const char* version : {"0.6.0", "3.0.0"})
     EXPECT_TRUE(load_inside(shape("cylinder", mirror), {}, version).shapes[0].flip) << version;
+}
+
+// A turn that was written with three decimals.
+TEST(Shapes, SpheresOfRoundedMatricesStayRound) {
+  const Scene s = load_inside(shape("sphere",
+                                    "<transform name='to_world'><matrix value='1.414 0 1.414 0 0 2 0 0 -1.414 "
+                                    "0 1.414 2 0 0 0 1'/></transform>"));
+  ASSERT_EQ(s.shapes[0].kind, ShapeKind::sphere);
+  const Mat4& m = s.shapes[0].to_world;
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(glm::length(Vec3(m[i])), 2, 1e-3);
+    EXPECT_NEAR(glm::length(Vec3(m[i])), glm::length(Vec3(m[0])), 1e-6);
+    EXPECT_NEAR(glm::dot(Vec3(m[i]), Vec3(m[(i + 1) % 3])), 0, 1e-6);
+  }
+  EXPECT_GT(m[0].x, 1.4f);
+  EXPECT_EQ(m[3].z, 2);
 }
 
 TEST(Shapes, StretchedSphereBecomesAMesh) {

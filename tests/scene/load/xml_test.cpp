@@ -469,5 +469,8 @@ TEST(Xml, SceneWithoutVersionIsTold) {
   EXPECT_FALSE(says(notes(" version='3.0.0'"), "version"));
 }
 
+// Which version 0.x has for what is left out.
+TEST(Xml, NullIsNothing) { EXPECT_EQ(load_inside("<null id='none'/>", {}, "0.6.0").shapes.size(), 0u); }
+
 }  // namespace
 }  // namespace ajar
