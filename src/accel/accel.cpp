@@ -6,6 +6,7 @@
 #include <atomic>
 #include <bit>
 
+#include "ajar/core/bytes.h"
 #include "ajar/core/error.h"
 #include "ajar/core/sampler.h"
 #include "ajar/scene/cutout.h"
@@ -117,7 +118,7 @@ struct Accel::Data {
   std::vector<EmbreeScene> groups;
   std::vector<Quadric> quadrics;
   std::vector<CutOut> cut_outs;
-  std::vector<uint64_t> sizes;
+  std::vector<uint64_t> marks;
   std::vector<uint32_t> grouped;         // shapes in groups, group by group
   std::vector<uint32_t> instance_first;  // by instance: where its group's begin among them
   std::atomic<int64_t> bytes{0};
@@ -127,13 +128,26 @@ namespace {
 
 // Of a scene whose rays are longer, products of its coordinates with them would overflow.
 constexpr float largest_stretched = 1e8f;
-// Triangles of every shape; of quadrics a number that no mesh has.
-std::vector<uint64_t> sizes_of(const Scene& scene) {
-  std::vector<uint64_t> sizes;
-  sizes.reserve(scene.shapes.size());
+
+uint64_t mark_of(const Mat4& m) { return checksum(&m, sizeof m, 0); }
+
+// How many triangles and corners it has, and where some of them are: a mesh that moved, or was bent, has others.
+uint64_t mark_of(const Mesh& mesh) {
+  const size_t n = mesh.positions.size(), step = std::max(n / 64, size_t(1));
+  uint64_t mark = hash(mesh.triangles.size(), n);
+  for (size_t i = 0; i < n; i += step) mark = checksum(&mesh.positions[i], sizeof mesh.positions[i], mark);
+  return mark;
+}
+
+// What tells a scene's shapes and instances from those of another.
+std::vector<uint64_t> marks_of(const Scene& scene) {
+  std::vector<uint64_t> marks;
+  marks.reserve(scene.shapes.size() + scene.instances.size());
   for (const Shape& s : scene.shapes)
-    sizes.push_back(s.kind == ShapeKind::mesh ? scene.meshes[s.mesh].triangles.size() : ~uint64_t(s.kind));
-  return sizes;
+    marks.push_back(s.kind == ShapeKind::mesh ? mark_of(scene.meshes[s.mesh])
+                                              : hash(mark_of(s.to_world), ~uint64_t(s.kind)));
+  for (const Instance& i : scene.instances) marks.push_back(hash(mark_of(i.to_world), i.group));
+  return marks;
 }
 
 [[noreturn]] void refuse(RTCDevice device, const char* what) {
@@ -200,7 +214,7 @@ bool count_bytes(void* data, ssize_t bytes, bool) {
 Accel::Accel(const Scene& scene) : data_(std::make_unique<Data>()), first_instance_(uint32_t(scene.shapes.size())) {
   require_finished(scene);
   Data& data = *data_;
-  data.sizes = sizes_of(scene);
+  data.marks = marks_of(scene);
   GeometryIds ids = number_geometries(scene);
   data.device.reset(rtcNewDevice(nullptr));
   if (!data.device) refuse(nullptr, "cannot start");
@@ -240,7 +254,7 @@ Accel::Accel(Accel&&) noexcept = default;
 Accel& Accel::operator=(Accel&&) noexcept = default;
 
 bool Accel::fits(const Scene& scene) const {
-  return data_ && data_->instance_first.size() == scene.instances.size() && data_->sizes == sizes_of(scene);
+  return data_ && data_->instance_first.size() == scene.instances.size() && data_->marks == marks_of(scene);
 }
 
 size_t Accel::bytes() const { return size_t(std::max<int64_t>(data_->bytes.load(), 0)); }
@@ -280,6 +294,7 @@ bool Accel::intersect(const Vec3& o, const Vec3& d, float t_min, float t_max, Hi
 bool Accel::occluded(const Vec3& o, const Vec3& d, float t_max) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
+  if (!(t_max > 0)) return false;
   RTCRay ray = make_ray(o, d, 0, t_max, stretch_);
   rtcOccluded1(static_cast<RTCScene>(top_), &context, &ray);
   return ray.tfar < 0;

@@ -110,6 +110,13 @@ std::string build_of_this_program() {
   return fmt::format("{:016x}", checksum(bytes.data(), bytes.size(), 0));
 }
 
+bool is_within(const fs::path& file, const fs::path& folder) {
+  if (file.empty()) return false;
+  std::error_code ignored;
+  const fs::path inner = fs::weakly_canonical(file, ignored), outer = fs::weakly_canonical(folder, ignored);
+  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+}
+
 void check_apart(const BenchArguments& a, const Suite& suite) {
   std::vector<Named> written, read = {{"the suite", a.suite}};
   for (const char* name : {"suite.json", "results.json", "results.csv", "report.html", "curves.svg"})
@@ -117,6 +124,13 @@ void check_apart(const BenchArguments& a, const Suite& suite) {
   for (const BenchScene& scene : suite.scenes)
     if (scene.missing.empty()) read.push_back({"the scene", scene.file});
   require_apart(written, read);
+  for (const BenchScene& scene : suite.scenes)
+    for (const char* part : {"runs", "images", "techniques", "fields"})
+      if (is_within(scene.reference, fs::path(a.out) / part))
+        throw Error(
+            fmt::format("{}: scenes \"{}\".reference: {} lies where bench writes its own; move it, or name "
+                        "another folder with -o",
+                        a.suite, scene.name, scene.reference.string()));
 }
 
 void run_bench_command(const BenchArguments& a) {

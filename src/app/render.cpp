@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
@@ -153,6 +154,13 @@ void warn(const Run& run, const RenderState& state) {
   say(stderr, "\n");
 }
 
+// One pass differs from no other.
+void note_variance(const RenderArguments& a, const RenderState& state) {
+  if (a.quiet || state.film.passes >= 2) return;
+  if (std::find(a.features.begin(), a.features.end(), "variance") != a.features.end())
+    say(stderr, "ajar: note: the variance is 0 everywhere, since it takes two passes to tell one\n");
+}
+
 void note_plain(const RenderArguments& a, const Run& run, const RenderState& state) {
   const Plain& p = state.plain;
   if (a.quiet || !may_leave_out(run.options)) return;
@@ -287,7 +295,7 @@ void run_render(RenderArguments a) {
   trace(a, scene, accel, run, state, log);
   const Spared spared = spare(a, run, state, log, state.stats.seconds - before);
   write_all(a, scene, accel, run, state, spared, log);
-  note_plain(a, run, state), note_black(a, run, state);
+  note_plain(a, run, state), note_black(a, run, state), note_variance(a, state);
   warn(run, state);
   if (run.interrupted) throw Interrupted{interruption(a, spared, state.film)};
   if (!a.versus.empty()) hold_against(a, scene, accel, run, state);

@@ -128,7 +128,8 @@ glm::dvec3 sum_since(const Summed& of_now, const Summed& of_then, const glm::dve
 }
 
 Picture develop(const Film& film) {
-  if (film.width < 1 || film.height < 1) throw Error("develop: a film without pixels; render one");
+  if (film.width < 1 || film.height < 1 || film.camera.size() != film.pixels())
+    throw Error("develop: a film without pixels; render one");
   Picture out{film.width, film.height, {"R", "G", "B"}, std::vector<float>(3 * film.pixels())};
   const double share = share_of_pass(film);
   const float per_path = 1 / float(film.pixels());

@@ -155,6 +155,8 @@ void write_exr(const std::string& path, const Picture& picture, const Metadata& 
 
 void write_png(const std::string& path, const Picture& picture, float exposure) {
   require_sound(path, picture);
+  if (!(std::abs(exposure) <= 100))
+    throw Error(fmt::format("{}: an exposure of {} is none; give -100 to 100 stops", path, exposure));
   const int channels = picture.channels() >= 3 ? 3 : 1;
   const size_t count = size_t(picture.width) * size_t(picture.height);
   std::vector<uint8_t> bytes(count * size_t(channels));

@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include "ajar/accel/sight.h"
+#include "ajar/core/error.h"
 #include "ajar/core/parallel.h"
 #include "ajar/core/sampler.h"
 #include "ajar/field/guide.h"
@@ -24,6 +27,9 @@ void add_first_hit(const Scene& scene, const Accel& accel, const Vec2& raster, c
 }  // namespace
 
 Picture render_features(const Scene& scene, const Accel& accel, uint64_t seed, int samples) {
+  require_finished(scene);
+  if (!accel.fits(scene)) throw Error("render_features: the accelerator is of another scene; make one of this scene");
+  if (samples < 1) throw Error(fmt::format("render_features: {} samples are none; ask for 1 or more", samples));
   const Camera& camera = scene.camera;
   Picture out{camera.crop_width,
               camera.crop_height,

@@ -27,8 +27,7 @@ bool give_lessons(const Scene& scene, const Accel& accel, const RenderOptions& o
   l.lesson = passes, l.of_film = true;
   l.train = first + lessons;
   RenderOptions endless = options;
-  endless.spp = 0, endless.seconds = 0, endless.cpu_seconds = 0, endless.noise = 0,
-  endless.techniques = endless.leaves_out = false;
+  endless.spp = 0, endless.seconds = 0, endless.cpu_seconds = 0, endless.noise = 0, endless.leaves_out = false;
   bool stopped = false;
   render(scene, accel, endless, state, [&](const RenderState& now) {
     stopped = monitor && !monitor(now);
@@ -81,6 +80,16 @@ bool is_cut(const Scene& scene, const Accel& accel, const Fields& fields, size_t
   return fields.generation >= young_generations && share_unseen(scene, accel, fields) > 1 - known;
 }
 
+// Without lessons none would ever end.
+void require_learning(const char* who, const SequenceOptions& sequence, const RenderOptions& options) {
+  check(options);
+  if (!learns(options))
+    throw Error(fmt::format("{}: {} learns no fields; take an integrator that guides, or set learn_lights", who,
+                            options.integrator));
+  if (!(sequence.forget >= 0 && sequence.forget <= 1))
+    throw Error(fmt::format("{}: sequence.forget is {}; give it 0 to 1", who, sequence.forget));
+}
+
 }  // namespace
 
 uint64_t image_seed(const SequenceOptions& sequence, uint64_t seed, uint32_t frame) {
@@ -95,8 +104,9 @@ std::optional<Fields> teach(const Scene& scene, const Accel& accel, const Render
                             const SequenceOptions& sequence, const Carried* before, const std::vector<Box>& moved,
                             uint32_t frame, const Monitor& monitor) {
   RenderOptions teaching = options;
-  teaching.limit_fireflies = false;  // in no image
+  teaching.limit_fireflies = teaching.techniques = false;  // of an image
   teaching.seed = teaching_seed(sequence, options.seed, frame);
+  require_learning("teach", sequence, teaching);
   RenderState state = start_render(scene, teaching);
   if (before) {
     go_on_with(scene, before->fields, moved, sequence, learn_options(teaching), state);
@@ -115,6 +125,7 @@ std::optional<Fields> teach(const Scene& scene, const Accel& accel, const Render
 }
 
 RenderState start_with(const Scene& scene, const RenderOptions& options, Fields fields) {
+  require_learning("start_with", {}, options);
   RenderState state = start_render(scene, options);
   fit_lights(scene.light_tree, learn_options(options), fields);
   state.learning.fields = std::move(fields);

@@ -35,6 +35,30 @@ RenderState start_render(const Scene& scene, const RenderOptions& options) {
   return state;
 }
 
+namespace {
+
+bool are_alike(const Filter& a, const Filter& b) {
+  return a.kind == b.kind && a.radius == b.radius && a.a == b.a && a.b == b.b;
+}
+
+// What passes that are in the film were made with goes for those to come.
+void require_alike(const Scene& scene, const RenderOptions& options, const RenderState& state) {
+  if (!are_alike(scene.filter, state.film.filter))
+    throw Error("render: the film has another filter than the scene; start_render makes a state for each");
+  if (options.techniques != state.pyramid.kept)
+    throw Error(
+        fmt::format("render: the state was started with techniques {}, and is asked to go on with {}; "
+                    "start_render makes a state for each",
+                    state.pyramid.kept, options.techniques));
+  if (options.limit_fireflies == state.film.brightest.empty())
+    throw Error(
+        fmt::format("render: the state was started with limit_fireflies {}, and is asked to go on with {}; "
+                    "start_render makes a state for each",
+                    !options.limit_fireflies, options.limit_fireflies));
+}
+
+}  // namespace
+
 void check_state(const Scene& scene, const RenderOptions& options, const RenderState& state) {
   check(options);
   require_finished(scene);
@@ -50,6 +74,7 @@ void check_state(const Scene& scene, const RenderOptions& options, const RenderS
     throw Error(fmt::format(
         "render: the state was started for {}, and is asked to go on with {}; start_render makes a state for each",
         state.integrator, integrator.name));
+  require_alike(scene, options, state);
   if (learns(options) && state.learning.fields.starts.cuts.empty())
     throw Error(fmt::format("render: {} learns, and the state has no fields; start_render makes one with these options",
                             options.integrator));

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <fstream>
+
 #include "ajar/core/error.h"
 #include "ajar/core/files.h"
 #include "ajar/film/pyramid.h"
@@ -154,6 +156,7 @@ void make_techniques(Bench& bench, const Stand& stand, const LoadedScene& loaded
     Racer racer = make_racer(method, loaded, bench.suite.seeds[0], bench.options.threads);
     racer.options = with_budget(racer.options, with_amount(all, all.spp > 0 ? std::max(amount, 1.0) : amount));
     racer.options.techniques = true;
+    racer.state = start_render(*loaded.scene, racer.options);
     render(*loaded.scene, *loaded.accel, racer.options, racer.state,
            [&](const RenderState&) { return watch(bench, stand, racer, bench.done); });
     if (bench.stopped || racer.state.pyramid.layers.empty()) continue;
@@ -263,6 +266,23 @@ void set_reference(const Bench& bench, Stand& stand) {
                              {"made_by", r.made_by}};
 }
 
+/// Whether a bench wrote this file, perhaps one that ended before its first run.
+bool is_of_bench(const fs::path& suite) {
+  std::ifstream in(suite, std::ios::binary);
+  const Json json = Json::parse(in, nullptr, false);
+  return json.is_object() && json.contains("version") && json.contains("build") && json.contains("threads");
+}
+
+/// Of a folder in which no run lies: throws Error where files that no bench wrote would be written over.
+void require_free(const fs::path& folder) {
+  const bool claimed = is_there((folder / "suite.json").string());
+  if (claimed && is_of_bench(folder / "suite.json")) return;
+  for (const char* name : {"suite.json", "results.json", "results.csv", "report.html", "curves.svg"})
+    if (is_there((folder / name).string()))
+      throw Error(fmt::format("{}: is of no bench, and would be written over; name another folder with -o",
+                              (folder / name).string()));
+}
+
 /// The folder is this suite's and this program's from now on.
 void claim_folder(const Bench& bench) {
   const fs::path path = bench.options.folder / "suite.json";
@@ -271,6 +291,7 @@ void claim_folder(const Bench& bench) {
   key["version"] = bench.options.version, key["build"] = bench.options.build;
   key["threads"] = machine_json(bench.options.threads)["threads"];
   if (!is_there(path.string()) || !is_there((bench.options.folder / "runs").string())) {
+    require_free(bench.options.folder);
     make_folder(folder);
     write_text(path.string(), text_of(key, 1) + "\n");
     return;

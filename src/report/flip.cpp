@@ -1,6 +1,9 @@
 // FLIP: A Difference Evaluator for Alternating Images (Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom,
 // Fairchild; High Performance Graphics 2020): the colour pipeline of its section 4.1, the feature pipeline of 4.2,
 // joined as in 4.3.
+#include <fmt/format.h>
+
+#include "ajar/core/error.h"
 #include "ajar/report/metrics.h"
 #include "planes.h"
 
@@ -145,6 +148,8 @@ double map_colour(double distance, double largest) {
 
 Picture flip(const Picture& image, const Picture& reference, double pixels_per_degree) {
   require_same_size(image, reference);
+  if (!(pixels_per_degree > 0 && pixels_per_degree < 1e6))
+    throw Error(fmt::format("flip: {} pixels per degree are none; give more than 0, below 1000000", pixels_per_degree));
   const ColourSpace space = colour_space();
   const std::array<Plane, 3> xyz[2] = {xyz_planes(space, image), xyz_planes(space, reference)};
   const std::vector<dvec3> seen[2] = {seen_colours(space, xyz[0], pixels_per_degree),

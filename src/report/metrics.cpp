@@ -1,6 +1,7 @@
 #include "ajar/report/metrics.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "ajar/core/error.h"
 #include "ajar/film/film.h"
@@ -28,6 +29,23 @@ void pixel_metrics(const std::array<Plane, 3>& image, const std::array<Plane, 3>
   metrics.relmse_trimmed = trimmed_mean(std::move(errors));
 }
 
+// All three, or none.
+void require_whole_variance(const Picture& picture, const std::string& file) {
+  std::vector<std::string> missing;
+  for (const char* name : {"Variance.R", "Variance.G", "Variance.B"})
+    if (std::find(picture.names.begin(), picture.names.end(), name) == picture.names.end()) missing.emplace_back(name);
+  if (!missing.empty() && missing.size() < 3)
+    throw Error(fmt::format("{}: lacks {} of the three channels of its variance; write it with all, or with none", file,
+                            fmt::join(missing, " and ")));
+}
+
+// Whether it has a variance above 0 in any pixel: after one pass none is known.
+bool tells_noise(const Picture& picture) {
+  if (!has_variance(picture)) return false;
+  const Picture variance = select(picture, {"Variance.R", "Variance.G", "Variance.B"});
+  return std::any_of(variance.pixels.begin(), variance.pixels.end(), [](float v) { return v > 0; });
+}
+
 }  // namespace
 
 double mean_of(const Picture& picture) {
@@ -43,6 +61,7 @@ void require_comparable(const Picture& picture, const std::string& file, const c
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", file, error.what()));
   }
+  require_whole_variance(picture, file);
   for (size_t i = 0; i < picture.pixels.size(); ++i) {
     const size_t pixel = i / picture.names.size(), channel = i % picture.names.size();
     const std::string& name = picture.names[channel];
@@ -63,7 +82,7 @@ Metrics compare(const Picture& image, const Picture& reference, bool with_flip) 
   pixel_metrics(rgb_planes(image), rgb_planes(reference), metrics);
   metrics.ssim = ssim(image, reference);
   if (with_flip) metrics.flip = mean_of(flip(image, reference));
-  metrics.has_z = has_variance(image) || has_variance(reference);
+  metrics.has_z = tells_noise(image) || tells_noise(reference);
   if (metrics.has_z) metrics.z = z_test(image, reference);
   return metrics;
 }

@@ -260,6 +260,11 @@ std::optional<Reference> find_reference(const Suite& suite, const BenchScene& sc
                      {{"image", scene.reference.filename().string()}}};
   const fs::path stem = reference_stem(scene.name, loaded, options.references);
   const fs::path image = stem.string() + ".exr", json = stem.string() + ".json";
+  if (!is_there(json.string()) && is_there(image.string()) && !is_there(stem.string() + ".parts"))
+    throw Error(
+        fmt::format("{}: has no record {} beside it, so a bench did not make it, and would write over it; move "
+                    "it, delete it, or name another folder with --references",
+                    image.string(), json.filename().string()));
   if (!is_there(image.string()) || !is_there(json.string())) return {};
   Json made = read_json(json, "delete it, and the reference is made again");
   if (!made.is_object() || made.value("request", Json()) != request_json(scene, loaded))

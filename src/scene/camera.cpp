@@ -91,7 +91,7 @@ float raster_factor(const Camera& c, const Vec3& o, const Vec3& x) {
 }
 
 void set_perspective(Camera& c, float fov_x_degrees, const Mat4& to_world) {
-  const float x = float(std::tan(double(fov_x_degrees) * std::numbers::pi / 360));
+  const float x = fov_x_degrees < 180 ? float(std::tan(double(fov_x_degrees) * std::numbers::pi / 360)) : infinity;
   if (c.kind == CameraKind::orthographic) c.kind = CameraKind::perspective;
   c.plane = {x, x * float(c.height) / float(c.width)};
   set_matrices(c, to_world);

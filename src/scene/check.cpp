@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "ajar/core/error.h"
@@ -189,6 +190,8 @@ void check_instance(const Scene& scene, size_t id) {
     refuse({"instance", id}, "its to_world cannot be inverted; give it finite numbers, and an extent each way");
 }
 
+bool is_extent(const Vec2& v, float most) { return v.x > 0 && v.y > 0 && v.x < most && v.y < most; }
+
 void check_light(const Scene& scene, uint32_t id) {
   const Light& light = scene.lights[id];
   const Named part{"light", id};
@@ -200,6 +203,12 @@ void check_light(const Scene& scene, uint32_t id) {
   if (light.kind == LightKind::sun && !(light.cone > 0 && light.cone <= 1))
     refuse(part,
            fmt::format("its cone is {}; give a sun one above 0, 1 at most, or take a directional light", light.cone));
+  if (light.kind == LightKind::spot && !(light.cutoff > 0 && light.cutoff <= pi && light.beam <= light.cutoff))
+    refuse(part, fmt::format("its cutoff is {} and its beam {}; give a spot a cutoff above 0, pi at most, and a beam "
+                             "within it",
+                             light.cutoff, light.beam));
+  if (light.kind == LightKind::projector && !is_extent(light.plane, infinity))
+    refuse(part, "its picture has no extent; give its plane two numbers above 0");
   if (light.kind == LightKind::area) {
     check_index(part, "shape", light.shape, scene.shapes, "shapes");
     if (scene.shapes[light.shape].light != id)
@@ -215,6 +224,38 @@ void check_light(const Scene& scene, uint32_t id) {
   check_image({"image", image}, scene.images[image]);
 }
 
+constexpr float nearest_focus = 1e-12f;  // nearer, rays have no direction in single precision
+
+// Of each image, whether it holds what no light is: negative numbers, as maps of normals do, or such as are not finite.
+std::vector<bool> images_without_light(const Scene& scene) {
+  std::vector<bool> found;
+  for (const Image& image : scene.images)
+    found.push_back(
+        !std::all_of(image.floats.begin(), image.floats.end(), [](float x) { return x >= 0 && x < infinity; }));
+  return found;
+}
+
+// Of a slot whose texture may mix others.
+void check_images_of(const Scene& scene, const Named& part, const char* name, const Slot& slot,
+                     const std::vector<bool>& refused) {
+  if (slot.texture == none) return;
+  const Texture& t = scene.textures[slot.texture];
+  if (t.kind == TextureKind::bitmap && refused[t.image])
+    refuse(part, fmt::format("image {} of its {} holds negative numbers, or such as are not finite; give it others",
+                             t.image, name));
+  check_images_of(scene, part, name, t.color0, refused), check_images_of(scene, part, name, t.color1, refused);
+}
+
+void check_images(const Scene& scene) {
+  const std::vector<bool> refused = images_without_light(scene);
+  if (std::find(refused.begin(), refused.end(), true) == refused.end()) return;
+  for (size_t i = 0; i < scene.materials.size(); ++i)
+    for (const auto& [name, slot] : reflecting_slots)
+      check_images_of(scene, {"material", i}, name, scene.materials[i].*slot, refused);
+  for (size_t i = 0; i < scene.lights.size(); ++i)
+    check_images_of(scene, {"light", i}, "radiance", scene.lights[i].radiance, refused);
+}
+
 }  // namespace
 
 void check_camera(const Camera& c) {
@@ -227,13 +268,16 @@ void check_camera(const Camera& c) {
     refuse_camera("looks nowhere; give it a target apart from its eye, and a to_world that can be inverted");
   if (!(max_abs(Vec3(c.to_world[3])) <= farthest))
     refuse_camera(fmt::format("stands farther than {} units away", farthest));
-  if (!(std::min(c.plane.x, c.plane.y) > 0 && std::max(c.plane.x, c.plane.y) < infinity))
-    refuse_camera("has no view; give it a field of view between 0 and 180 degrees");
-  if (!(c.aperture >= 0 && c.aperture < infinity && c.focus > 0 && c.focus < infinity))
-    refuse_camera("has a lens that is none; give it an aperture of 0 or more, and a focus beyond 0");
-  if (!(std::abs(c.near_clip) < infinity && c.far_clip > c.near_clip))
-    refuse_camera("has clip planes that are none; give it a near one that is finite, and a far one beyond it");
-  if (!std::isfinite(c.principal.x + c.principal.y)) refuse_camera("has a principal point that is not finite");
+  const bool flat = c.kind == CameraKind::orthographic;
+  if (!is_extent(c.plane, farthest)) refuse_camera("has no view; give it a field of view between 0 and 180 degrees");
+  if (!(c.aperture >= 0 && c.aperture <= farthest && c.focus > nearest_focus && c.focus < infinity))
+    refuse_camera(fmt::format("has a lens that is none; give it an aperture of 0 to {}, and a focus beyond {}",
+                              farthest, nearest_focus));
+  if (!(c.near_clip >= (flat ? -farthest : 0) && c.near_clip <= farthest && c.far_clip > c.near_clip))
+    refuse_camera(fmt::format("has clip planes that are none; give it a near one of {} to {}, and a far one beyond it",
+                              flat ? -farthest : 0, farthest));
+  if (!(std::abs(c.principal.x) <= 100 && std::abs(c.principal.y) <= 100))
+    refuse_camera("has a principal point more than 100 images away");
 }
 
 void check_parts(const Scene& scene) {
@@ -244,6 +288,7 @@ void check_parts(const Scene& scene) {
   for (uint32_t i = 0; i < scene.shapes.size(); ++i) check_shape(scene, i);
   for (uint32_t i = 0; i < scene.lights.size(); ++i) check_light(scene, i);
   for (size_t i = 0; i < scene.instances.size(); ++i) check_instance(scene, i);
+  check_images(scene);
 }
 
 }  // namespace ajar

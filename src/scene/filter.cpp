@@ -1,5 +1,8 @@
 #include "ajar/scene/filter.h"
 
+#include <fmt/format.h>
+
+#include "ajar/core/error.h"
 #include "ajar/core/warp.h"
 
 namespace ajar {
@@ -112,6 +115,17 @@ float sample_table(const Filter& f, float u, float& weight) {
   return ((float(i) + in_bin) * (2.0f / table_size) - 1) * f.radius;
 }
 
+void require_within(const char* what, float value, float least, float most) {
+  if (!(value >= least && value <= most))
+    throw Error(fmt::format("filter: its {} is {}; give it {} to {}", what, value, least, most));
+}
+
+void check_filter(const Filter& f) {
+  if (f.kind == FilterKind::gaussian) require_within("stddev", f.a, 0.05f, 16);
+  if (f.kind == FilterKind::lanczos) require_within("number of lobes", f.a, 1, 16);
+  if (f.kind == FilterKind::mitchell) require_within("B", f.a, -4, 4), require_within("C", f.b, -4, 4);
+}
+
 }  // namespace
 
 Filter make_filter(FilterKind kind, float radius, std::optional<float> a, std::optional<float> b) {
@@ -119,7 +133,9 @@ Filter make_filter(FilterKind kind, float radius, std::optional<float> a, std::o
   f.kind = kind;
   f.a = a.value_or(usual_parameter(kind));
   f.b = b.value_or(kind == FilterKind::mitchell ? usual_parameter(kind) : 0);
-  f.radius = radius > 0 ? radius : usual_radius(kind, f.a);
+  check_filter(f);
+  if (radius != 0) require_within("radius", radius, 0.05f, 16);
+  f.radius = radius != 0 ? radius : usual_radius(kind, f.a);
   if (kind != FilterKind::box && kind != FilterKind::tent) fill_tables(f);
   return f;
 }

@@ -12,6 +12,10 @@
 namespace ajar {
 namespace {
 
+void require_within(const char* scene, const char* parts, int n, int least, int most) {
+  if (n < least || n > most) throw Error(fmt::format("{}: {} {}; give it {} to {}", scene, n, parts, least, most));
+}
+
 Scene begin() {
   Scene scene;
   scene.filter = make_filter(FilterKind::box);
@@ -139,7 +143,7 @@ Scene polygon_over_plane(int corners, float height, float radius, const Rgb& rad
   set_camera(scene, {0, 0.8f * height, 3 * height}, {0, 0, 0.4f * height}, 25, size, size);
   add_quad(scene, {-50, 0, 50}, {100, 0, 0}, {0, 0, -100}, add_diffuse(scene, Rgb(reflectance)));
   Mesh mesh;
-  corners = std::max(corners, 3);
+  require_within("polygon_over_plane", "corners", corners, 3, 10'000'000);
   for (int i = 0; i < corners; ++i) {
     const float angle = 2 * pi * float(i) / float(corners);
     mesh.positions.push_back({radius * std::sin(angle), height, radius * std::cos(angle)});
@@ -200,11 +204,11 @@ Scene glass_ball(float ior, int size) {
 }
 
 Scene mirror_chain(int mirrors, int size) {
+  require_within("mirror_chain", "mirrors", mirrors, 0, 64);
   Scene scene = begin();
   Material mirror;
   mirror.kind = MaterialKind::conductor;  // eta 0, k 1: reflects everything
   const uint32_t silver = add_material(scene, mirror);
-  mirrors = std::clamp(mirrors, 0, 64);
   // A ray at 45 degrees hops between y = 0 and y = 1, one mirror a metre, and half a metre on it meets the screen.
   for (int i = 1; i <= mirrors; ++i) {
     const Vec3 along(0.9f, 0, 0), across(0, 0, 0.9f);
@@ -222,6 +226,7 @@ Scene mirror_chain(int mirrors, int size) {
 }
 
 Scene many_lights(int lights, uint64_t seed, int size) {
+  require_within("many_lights", "lights", lights, 0, 10'000'000);
   Scene scene = room(size, true);
   add_two_boxes(scene);
   const int columns = std::max(1, int(std::ceil(std::sqrt(double(lights)))));

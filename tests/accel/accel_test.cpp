@@ -243,6 +243,7 @@ TEST(Accel, CornersOfTheInterval) {
   EXPECT_FALSE(accel.intersect(o, d, 4.5f, infinity, hit));
   EXPECT_FALSE(accel.occluded(o, d, 1.999f));
   EXPECT_TRUE(accel.occluded(o, d, 2.001f));
+  for (const float none_of_it : {0.0f, -1.0f, -infinity, std::nanf("")}) EXPECT_FALSE(accel.occluded(o, d, none_of_it));
 }
 
 TEST(Accel, InstancesAreTheTransformedGroup) {

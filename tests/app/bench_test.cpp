@@ -127,6 +127,29 @@ TEST_F(BenchCommand, ASuiteIsNotWrittenOver) {
   EXPECT_EQ(kit::bytes_of(out + "/results.json"), before);
 }
 
+// The first seed's image would take its place.
+TEST_F(BenchCommand, AReferenceIsNotWrittenOver) {
+  const fs::path image = fs::path(out) / "images/s/b.exr";
+  fs::create_directories(image.parent_path());
+  std::ofstream(image) << "mine";
+  nlohmann::json json = nlohmann::json::parse(std::ifstream(suite));
+  json["scenes"][0]["reference"] = {{"image", "out/images/s/b.exr"}};
+  std::ofstream(suite) << json.dump();
+  const std::string error = kit::error_of([&] { run({suite, "-o", out}); });
+  EXPECT_NE(error.find("b.exr lies where bench writes its own"), std::string::npos) << error;
+  EXPECT_EQ(kit::bytes_of(image), "mine");
+}
+
+// Names may hold anything.
+TEST_F(BenchCommand, ErrorsAreOneLine) {
+  nlohmann::json json = nlohmann::json::parse(std::ifstream(suite));
+  json["methods"][0]["name"] = std::string("a\nb\0c", 5);
+  std::ofstream(suite) << json.dump();
+  const std::string error = kit::error_of([&] { run({suite, "-o", out}); });
+  EXPECT_NE(error.find("a b c"), std::string::npos) << error;
+  EXPECT_EQ(error.find('\n'), std::string::npos);
+}
+
 TEST_F(BenchCommand, ErrorsComeBeforeAnythingIsWritten) {
   std::ofstream(suite) << R"({"title": "t"})";
   EXPECT_THROW(run({suite, "-o", out}), Error);

@@ -306,6 +306,14 @@ TEST_F(PictureFile, PngComesBackWithinItsStep) {
     for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(in.pixels[3 * i + c], decode_srgb(double(i) / 255), 1e-6) << i;
 }
 
+TEST_F(PictureFile, PngsNeedAFiniteExposure) {
+  const Picture white{1, 1, {"R", "G", "B"}, {1, 0, infinity}};
+  for (const float bad : {std::nanf(""), infinity, -infinity, 1e4f})
+    EXPECT_THROW(write_png(file("e.png"), white, bad), Error) << bad;
+  EXPECT_EQ(file_count(), 0u);
+  EXPECT_NO_THROW(write_png(file("e.png"), white, 100));
+}
+
 TEST_F(PictureFile, GreyPngAndNan) {
   write_png(file("a.png"), Picture{2, 1, {"Y", "Z"}, {1, 0, 0.5f, 0}});
   const Picture in = read_picture(file("a.png"));

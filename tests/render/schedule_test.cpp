@@ -276,6 +276,32 @@ TEST(Schedule, ScenesAreFinishedAndHaveTheirAccelerator) {
   const Scene other = glass_ball(1.5f, 16), copy = scene;
   has(kit::error_of([&] { render(scene, Accel(other), o, state, {}); }), "accelerator is of another scene");
   EXPECT_EQ(kit::error_of([&] { render(scene, Accel(copy), o, state, {}); }), "") << "nothing moved";
+  const Scene shut = two_rooms(20, 16), open = two_rooms(60, 16);
+  RenderState of_door = start_render(open, o);
+  has(kit::error_of([&] { render(open, Accel(shut), o, of_door, {}); }), "accelerator is of another scene");
+  has(kit::error_of([&] { render_features(open, Accel(shut), 1); }), "accelerator is of another scene");
+  has(kit::error_of([&] { render_features(open, Accel(open), 1, 0); }), "0 samples are none");
+}
+
+// What the passes of a film were made with goes for those to come.
+TEST(Schedule, AStateGoesOnAsItBegan) {
+  Scene scene = stage(8);
+  finish(scene);
+  const Accel accel(scene);
+  const RenderOptions o = options_of("bdpt", 1);
+  const auto refusal = [&](const RenderOptions& changed) {
+    RenderState state = start_render(scene, o);
+    return kit::error_of([&] { render(scene, accel, changed, state, {}); });
+  };
+  EXPECT_EQ(refusal(o), "");
+  RenderOptions other = o;
+  other.techniques = true;
+  EXPECT_NE(refusal(other).find("started with techniques false"), std::string::npos) << refusal(other);
+  other = o, other.limit_fireflies = true;
+  EXPECT_NE(refusal(other).find("started with limit_fireflies false"), std::string::npos) << refusal(other);
+  RenderState state = start_render(scene, o);
+  scene.filter = make_filter(FilterKind::box, 2);
+  EXPECT_NE(kit::error_of([&] { render(scene, accel, o, state, {}); }).find("another filter"), std::string::npos);
 }
 
 TEST(Schedule, OptionsThatCannotBeMeantAreErrors) {

@@ -10,6 +10,7 @@
 
 #include "ajar/core/error.h"
 #include "frames.h"
+#include "kit/files.h"
 #include "kit/stage.h"
 
 namespace ajar {
@@ -224,6 +225,22 @@ TEST(Sequence, TeachesInAsManyPassesAsItSays) {
 }
 
 // With a time limit that is over at once: the fewest lessons, and one short one where fields are carried.
+// Lessons of who learns nothing would never end.
+TEST(Sequence, TeachesOnlyWhoLearns) {
+  const Scene scene = room_at(0);
+  const Accel accel(scene);
+  const auto refusal = [&](const char* integrator, const SequenceOptions& sequence) {
+    return kit::error_of([&] { teach(scene, accel, statistical(integrator), sequence, nullptr, {}, 0, {}); });
+  };
+  for (const char* integrator : {"path", "bdpt", "photon"}) {
+    EXPECT_NE(refusal(integrator, usual()).find("learns no fields"), std::string::npos) << integrator;
+    EXPECT_THROW(start_with(scene, statistical(integrator), {}), Error) << integrator;
+  }
+  SequenceOptions bad = usual();
+  bad.forget = 2;
+  EXPECT_NE(refusal("guided-bdpt", bad).find("sequence.forget is 2"), std::string::npos);
+}
+
 TEST(Sequence, LessonsKeepToTheTime) {
   const Scene scene = room_at(0);
   const Accel accel(scene);

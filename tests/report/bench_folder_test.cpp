@@ -1,5 +1,7 @@
 // What a bench finds in its folders: of another suite, scene, build or reference, damaged, or in the way.
 
+#include <fmt/format.h>
+
 #include "ajar/core/files.h"
 #include "ajar/film/picture.h"
 #include "bench_stage.h"
@@ -49,6 +51,22 @@ TEST_F(Bench, AFolderWithoutRunsIsFree) {
   Json other = small();
   other["seeds"] = 3;
   EXPECT_EQ(error_of(other), "");
+}
+
+TEST_F(Bench, FilesThatNoBenchWroteStay) {
+  for (const char* name : {"results.json", "suite.json", "report.html"}) {
+    fs::create_directories(options.folder);
+    std::ofstream(options.folder / name) << "{\"mine\": 1}";
+    EXPECT_NE(error_of(small()).find(fmt::format("{}: is of no bench", name)), std::string::npos) << error_of(small());
+    EXPECT_EQ(kit::bytes_of(options.folder / name), "{\"mine\": 1}");
+    fs::remove_all(options.folder);
+  }
+  fs::create_directories(options.references);
+  const fs::path image = options.references / "s-16x12-depth3.exr";
+  std::ofstream(image) << "mine";
+  EXPECT_NE(error_of(small()).find("has no record s-16x12-depth3.json beside it"), std::string::npos)
+      << error_of(small());
+  EXPECT_EQ(kit::bytes_of(image), "mine");
 }
 
 // Whoever goes on elsewhere, or leaves out --threads, would mix the times of one machine with those of another.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ajar/core/error.h"
 #include "ajar/film/tone.h"
 #include "ajar/report/metrics.h"
 #include "pictures.h"
@@ -194,6 +195,11 @@ TEST(Flip, ALostPointIsSeenWhereItWas) {
   EXPECT_GT(map.pixels[30 * 61 + 30], 0.2);
   EXPECT_EQ(*std::max_element(map.pixels.begin(), map.pixels.end()), map.pixels[30 * 61 + 30]);
   EXPECT_LT(map.pixels[0], 1e-6) << "beyond the filters' reach nothing differs";
+}
+
+TEST(Flip, NeedsAResolution) {
+  const Picture p = test::constant(4, 4, Rgb(0.5f));
+  for (const double bad : {0.0, -1.0, double(infinity), std::nan("")}) EXPECT_THROW(flip(p, p, bad), Error) << bad;
 }
 
 TEST(Flip, OnePixelAndOneRow) {

@@ -36,6 +36,21 @@ TEST(Metrics, TwoPixelsByHand) {
   EXPECT_FALSE(m.has_z);
 }
 
+// After one pass the variance is 0 everywhere, which is no measure of noise.
+TEST(Metrics, ImagesOfOnePassAreNotTestedForNoise) {
+  const auto with = [](float value, float variance) {
+    return Picture{1,
+                   1,
+                   {"R", "G", "B", "Variance.R", "Variance.G", "Variance.B"},
+                   {value, value, value, variance, variance, variance}};
+  };
+  EXPECT_FALSE(compare(with(1, 0), with(2, 0)).has_z);
+  EXPECT_TRUE(compare(with(1, 0.1f), with(2, 0)).has_z);
+  const Picture part{1, 1, {"R", "G", "B", "Variance.R", "Variance.G"}, {1, 1, 1, 0.1f, 0.1f}};
+  EXPECT_NE(error_of([&] { compare(with(1, 0), part); }).find("lacks Variance.B of the three channels"),
+            std::string::npos);
+}
+
 TEST(Metrics, NegativeReferenceCountsByItsMagnitude) {
   const Metrics m = compare(constant(1, 1, Rgb(0.0f)), constant(1, 1, Rgb(-0.01f)));
   EXPECT_NEAR(m.mape, 0.5, 1e-6);

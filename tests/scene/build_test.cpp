@@ -1,5 +1,6 @@
 #include "ajar/scene/build.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -114,21 +115,29 @@ TEST(Build, cameras_that_cannot_be_are_errors) {
   expect("camera looks nowhere", set({std::nanf(""), 0, 3}, {0, 0, 0}, 40));
   expect("camera looks nowhere", [](Scene& s) { set_perspective(s.camera, 40, Mat4(0)); });
   expect("camera stands farther than 1e+18", [](Scene& s) { s.camera.to_world[3].y = 1e19f; });
-  for (const float fov : {0.0f, -5.0f, 200.0f, 360.0f, infinity, std::nanf("")})
+  for (const float fov : {0.0f, -5.0f, 180.0f, 200.0f, 360.0f, infinity, std::nanf("")})
     expect("camera has no view", set({0, 0, 3}, {0, 0, 0}, fov));
   expect("camera has a lens that is none", [](Scene& s) { s.camera.focus = 0; });
-  expect("camera has a lens that is none", [](Scene& s) { s.camera.aperture = std::nanf(""); });
+  expect("camera has a lens that is none", [](Scene& s) { s.camera.focus = 1e-38f; });
+  for (const float bad : {std::nanf(""), 1e20f}) {
+    expect("camera has a lens that is none", [=](Scene& s) { s.camera.aperture = bad; });
+    expect("camera has no view", [=](Scene& s) { s.camera.plane.y = bad; });
+  }
   expect("camera has less than a pixel", [](Scene& s) { s.camera.width = 0; });
   expect("crop window that is not inside", [](Scene& s) { s.camera.crop_x = 1; });
   expect("crop window that is not inside", [](Scene& s) { s.camera.crop_height = 0; });
 }
 
 TEST(Build, cameras_have_places_for_their_clip_planes) {
-  for (const float bad : {std::nanf(""), infinity})
+  for (const float bad : {std::nanf(""), infinity, -1.0f, 1e19f})
     expect("clip planes that are none", [=](Scene& s) { s.camera.near_clip = bad; });
   expect("clip planes that are none", [](Scene& s) { s.camera.far_clip = std::nanf(""); });
   expect("clip planes that are none", [](Scene& s) { s.camera.far_clip = s.camera.near_clip; });
-  expect("principal point that is not finite", [](Scene& s) { s.camera.principal.y = std::nanf(""); });
+  EXPECT_EQ(refusal([](Scene& s) { set_orthographic(s.camera, Mat4(1)), s.camera.near_clip = -1; }), "");
+  expect("clip planes that are none",
+         [](Scene& s) { set_orthographic(s.camera, Mat4(1)), s.camera.near_clip = -1e19f; });
+  for (const float bad : {std::nanf(""), 1e30f})
+    expect("principal point more than", [=](Scene& s) { s.camera.principal.y = bad; });
 }
 
 TEST(Build, a_finished_scene_s_camera_may_be_set_but_must_see) {
@@ -173,6 +182,12 @@ TEST(Build, lights_that_cannot_be_are_errors) {
   });
   expect("its cone is 0", [](Scene& s) { s.lights[add_light(s, LightKind::sun, Rgb(1))].cone = 0; });
   EXPECT_EQ(refusal([](Scene& s) { add_light(s, LightKind::sun, Rgb(1)); }), "");
+  for (const float bad : {std::nanf(""), 0.0f, 7.0f})
+    expect(fmt::format("its cutoff is {}", bad).c_str(),
+           [=](Scene& s) { s.lights[add_light(s, LightKind::spot, Rgb(1))].cutoff = bad; });
+  expect("its beam 2", [](Scene& s) { s.lights[add_light(s, LightKind::spot, Rgb(1))].beam = 2; });
+  expect("its picture has no extent",
+         [](Scene& s) { s.lights[add_light(s, LightKind::projector, Rgb(1))].plane.y = std::nanf(""); });
   expect("its scale is -1", [](Scene& s) { add_envmap(s, add_image(s, 1, 1, {1, 1, 1}), -1); });
 }
 
@@ -217,6 +232,21 @@ TEST(Build, parts_that_cannot_be_are_errors) {
   EXPECT_THROW(add_envmap(scene, Slot(1.0f)), Error);
   EXPECT_THROW(add_envmap(scene, add_checkerboard(scene, Rgb(0), Rgb(1))), Error);
   EXPECT_THROW(add_area_light(scene, 0, Slot(1.0f)), Error);
+}
+
+// Maps of normals may hold them.
+TEST(Build, negative_images_are_no_colours) {
+  const auto grey_of = [](Scene& s, float value) { return add_image(s, 1, 1, {value, value, value}); };
+  EXPECT_EQ(refusal([&](Scene& s) { s.materials[0].reflectance = grey_of(s, 1); }), "");
+  EXPECT_EQ(refusal([&](Scene& s) { s.materials[0].map = grey_of(s, -1); }), "");
+  expect("image 0 of its reflectance holds negative", [&](Scene& s) { s.materials[0].reflectance = grey_of(s, -1); });
+  expect("image 0 of its radiance holds negative", [&](Scene& s) { s.lights[0].radiance = grey_of(s, -1); });
+  expect("image 0 of its reflectance holds negative", [&](Scene& s) {
+    Texture mixed;
+    mixed.kind = TextureKind::scale, mixed.color0 = grey_of(s, -1);
+    s.textures.push_back(mixed);
+    s.materials[0].reflectance.texture = uint32_t(s.textures.size() - 1);
+  });
 }
 
 TEST(Build, what_was_added_to_is_not_finished) {

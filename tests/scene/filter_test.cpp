@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ajar/core/error.h"
 #include "ajar/core/sampler.h"
 
 namespace ajar {
@@ -123,6 +124,22 @@ TEST(Filter, SampleDensityIsTheAbsoluteKernel) {
     }
     for (int b = 0; b < bins; ++b)
       EXPECT_NEAR(count[b], expected[b], 3e-5 + 1e-3 * expected[b]) << int(f.kind) << " " << b;
+  }
+}
+
+// What would make a table of no numbers, or one that a film cannot hold.
+TEST(Filter, ParametersThatCannotBeMeantAreErrors) {
+  const float nan = std::nanf("");
+  for (const float bad : {0.0f, -1.0f, 1e-3f, 17.0f, 1e9f, nan, infinity}) {
+    EXPECT_THROW(make_filter(FilterKind::gaussian, 2, bad), Error) << bad;
+    EXPECT_THROW(make_filter(FilterKind::lanczos, 0, bad), Error) << bad;
+    for (const FilterKind k : kinds) {
+      EXPECT_THROW(make_filter(k, bad != 0 ? bad : -1), Error) << int(k) << " " << bad;
+    }
+  }
+  for (const float bad : {100.0f, -5.0f, nan}) {
+    EXPECT_THROW(make_filter(FilterKind::mitchell, 0, bad), Error);
+    EXPECT_THROW(make_filter(FilterKind::mitchell, 0, 0.3f, bad), Error);
   }
 }
 

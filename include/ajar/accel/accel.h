@@ -18,11 +18,13 @@ class Accel {
   Accel(Accel&&) noexcept;
   Accel& operator=(Accel&&) noexcept;
 
-  /// Nearest hit with t in (t_min, t_max); hit is written only when there is one.
+  /// Nearest hit with t in (t_min, t_max); hit is written only when there is one. The ray tracer ends the program for
+  /// rays that are none: o must be within `farthest` of the origin, d not longer than 10^9, t_min 0 or more.
   bool intersect(const Vec3& o, const Vec3& d, float t_min, float t_max, Hit& hit) const;
-  /// Whether anything lies on o + t d, t in (0, t_max).
+  /// Whether anything lies on o + t d, t in (0, t_max). o and d as above.
   bool occluded(const Vec3& o, const Vec3& d, float t_max) const;
-  /// Whether it may be of this scene: of as many shapes, of as many triangles each, and as many instances.
+  /// Whether it may be of this scene: of as many shapes, with as many triangles in the same places, as far as some of
+  /// their corners tell, and as many instances.
   bool fits(const Scene& scene) const;
   /// Bytes held by the structure.
   size_t bytes() const;

@@ -4,12 +4,21 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace ajar {
 
-/// An error of the user's making (a file, an option); what() is one line that names file, element and cure.
+/// An error of the user's making (a file, an option); what() is one line that names file, element and cure. Names that
+/// it quotes may hold anything: a space stands for what would end the line, or the text.
 struct Error : std::runtime_error {
-  using std::runtime_error::runtime_error;
+  explicit Error(std::string text) : std::runtime_error(one_line(std::move(text))) {}
+
+ private:
+  static std::string one_line(std::string text) {
+    for (char& c : text)
+      if (static_cast<unsigned char>(c) < ' ') c = ' ';
+    return text;
+  }
 };
 
 }  // namespace ajar

@@ -28,7 +28,7 @@ inline constexpr int most_threads = 4096;
 /// A number of threads that work together; loops that begin inside run() use these and no others.
 class Threads {
  public:
-  explicit Threads(int count);  ///< 0: processor_count(); most_threads at most
+  explicit Threads(int count);  ///< below 1: processor_count(); most_threads at most
   ~Threads();
   Threads(const Threads&) = delete;
   Threads& operator=(const Threads&) = delete;

@@ -39,14 +39,16 @@ class PictureThreads {
 
 /// Of the channels of an OpenEXR file.
 enum class PixelType { half, float32 };
-/// Writes channels and metadata ("ajar:seed" ..., names as given) to an OpenEXR file, ZIP-compressed; the same
-/// arguments give the same bytes. half: a channel that holds a finite value beyond the range of half (65504) stays
-/// float, so that nothing turns into infinity; so does one whose largest value is below 1/16, so that what is dim keeps
-/// its bits, and "Variance." and "P." do. Throws Error; a failure leaves no file, and an older one as it was.
+/// Writes channels and metadata to an OpenEXR file, ZIP-compressed; the same arguments give the same bytes. Names of
+/// metadata need a prefix of their own ("ajar:seed"): of others OpenEXR takes some for itself, and drops or renames
+/// them. half: a channel that holds a finite value beyond the range of half (65504) stays float, so that nothing turns
+/// into infinity; so does one whose largest value is below 1/16, so that what is dim keeps its bits, and "Variance."
+/// and "P." do. Throws Error; a failure leaves no file, and an older one as it was.
 void write_exr(const std::string& path, const Picture& picture, const Metadata& metadata = {},
                PixelType type = PixelType::float32);
 /// Writes the first three channels (or, of fewer, the first as grey) to an 8-bit PNG by the fixed tone curve of
-/// docs/notation.md; exposure in stops. Throws Error, also where such a channel holds NaN.
+/// docs/notation.md; exposure in stops. Throws Error, also where such a channel holds NaN, or for more than
+/// 100 stops either way.
 void write_png(const std::string& path, const Picture& picture, float exposure = 0);
 /// Reads any image that OpenImageIO reads (of several parts the first); integer files are decoded from sRGB, except
 /// alpha and where the file says that it is linear. The picture is the file's display window: black where the file's

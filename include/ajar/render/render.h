@@ -62,8 +62,9 @@ RenderState start_render(const Scene& scene, const RenderOptions& options);
 /// pass of those that count. The target is looked at after 8, 10, 12, 14, 16, 18, 20 ... 32, 36 ... passes; where it is
 /// the only limit, an image that is black after 1024 passes, or after 8 without lights, ends too. Deterministic for spp
 /// and noise: the same bytes with any number of threads, and when stopped and called again with the same state. Throws
-/// Error for an accelerator of another scene, for a state of another size or integrator than scene and options ask for
-/// or with fields of other lights, and where next_event is false and light subpaths are traced.
+/// Error for an accelerator of another scene, for a state of another size, filter or integrator than scene and options
+/// ask for, of other techniques or limit_fireflies, or with fields of other lights, and where next_event is false and
+/// light subpaths are traced.
 void render(const Scene& scene, const Accel& accel, const RenderOptions& options, RenderState& state,
             const Monitor& monitor);
 
@@ -78,7 +79,8 @@ void load_checkpoint(const std::string& path, const std::string& key, RenderStat
 std::string read_checkpoint_key(const std::string& path);
 
 /// First-hit features, averaged over a few jittered samples per pixel: "Albedo.R" ..., "N.X" ... (world shading
-/// normal), "P.X" ... (world position); zero where nothing is hit. Channel names are pbrt's.
+/// normal), "P.X" ... (world position); zero where nothing is hit. Channel names are pbrt's. Throws Error for a scene
+/// that is not finished, an accelerator of another one, and less than a sample.
 Picture render_features(const Scene& scene, const Accel& accel, uint64_t seed, int samples = 16);
 
 /// For who stops a render: where merging was left out, the image with it as long as it has more passes. The state is

@@ -46,12 +46,12 @@ uint64_t teaching_seed(const SequenceOptions& sequence, uint64_t seed, uint32_t 
 /// The fields of a frame: those of the frame before, doubted where the scene moved, and then taught; from nothing where
 /// there are none, or after a cut. Where the image has a time limit, lessons take a third of it, more only where fields
 /// would be of no use otherwise; else they are the same whatever the clock and the number of threads. options: of the
-/// image. Nothing where the monitor said stop.
+/// image. Nothing where the monitor said stop. Throws Error where the integrator learns nothing.
 std::optional<Fields> teach(const Scene& scene, const Accel& accel, const RenderOptions& options,
                             const SequenceOptions& sequence, const Carried* before, const std::vector<Box>& moved,
                             uint32_t frame, const Monitor& monitor);
 /// A render of a guided integrator with these fields, which stay as they are: nothing is recorded. What they know of
-/// other lights than the scene's is forgotten.
+/// other lights than the scene's is forgotten. Throws Error where the integrator learns nothing.
 RenderState start_with(const Scene& scene, const RenderOptions& options, Fields fields);
 
 /// Files of what is carried; the key names the animation. Throws Error.

@@ -45,7 +45,7 @@ double ssim(const Picture& image, const Picture& reference);
 
 /// LDR-FLIP per pixel, in [0,1] (Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom and Fairchild 2020), of the
 /// images clipped to [0,1]; pixels_per_degree as the paper has it for a screen 0.7 m wide, 3840 pixels, seen from 0.7
-/// m. One channel, "Flip".
+/// m, above 0. One channel, "Flip". Throws Error.
 Picture flip(const Picture& image, const Picture& reference, double pixels_per_degree = 3840 * std::numbers::pi / 180);
 
 /// Throws Error unless at least one of the images has variance channels.

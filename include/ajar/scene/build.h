@@ -79,7 +79,7 @@ Scene two_rooms(float door_degrees, int height = 36);
 Scene cornell(int size = 32);
 /// The same room with a ball of glass of the index instead of the boxes.
 Scene glass_ball(float ior = 1.5f, int size = 32);
-/// A lit screen that the camera sees over so many mirrors, all else black. 0 to 64 mirrors.
+/// A lit screen that the camera sees over so many mirrors, all else black. Throws Error unless 0 to 64 mirrors.
 Scene mirror_chain(int mirrors, int size = 24);
 /// The room with boxes and so many small square lamps of different colours and powers under its ceiling, instead of
 /// one.

@@ -24,7 +24,8 @@ struct Filter {
 };
 
 /// Builds a filter; radius 0 takes the kind's usual one (box 0.5, tent 1, gaussian 4 stddev = 2, the others 2; lanczos
-/// its lobes); without a or b the usual parameters (gaussian stddev 0.5; mitchell B = C = 1/3; lanczos 3 lobes).
+/// its lobes); without a or b the usual parameters (gaussian stddev 0.5; mitchell B = C = 1/3; lanczos 3 lobes). Throws
+/// Error for a radius or a stddev that is not from 0.05 to 16 pixels, lobes not from 1 to 16, B or C not from -4 to 4.
 Filter make_filter(FilterKind kind, float radius = 0, std::optional<float> a = {}, std::optional<float> b = {});
 /// Kernel at a signed distance in pixels, normalised so that its integral is 1.
 float eval(const Filter& filter, float x);

@@ -120,10 +120,11 @@ inline constexpr float farthest = 1e18f;
 /// Computes what is derived (inverses, areas, bounds, light choice; directions become unit); call once after building
 /// or changing a scene. Throws Error where parts do not fit (an index that leads nowhere, lists of a mesh or image of
 /// other lengths than they say, an area light and a shape that do not name each other), where a colour of a material or
-/// light, or a light's sampling_weight, is not finite or negative, where something reaches or stands beyond `farthest`,
-/// where the transform of an environment, spot or projector cannot be inverted, for a camera without a view, a lens or
-/// a place for its crop window, for a lamp in a group, a sphere that is not round, a sun without extent, and for bsdfs
-/// that cannot be (one that is part of itself, an index of refraction below 0).
+/// light, or of an image that is one, or a light's sampling_weight, is not finite or negative, where something reaches
+/// or stands beyond `farthest`, where the transform of an environment, spot or projector cannot be inverted, for a
+/// camera without a view, a lens or a place for its crop window, or with clip planes that are none, for a lamp in a
+/// group, a sphere that is not round, a sun, a spot or a projector without extent, and for bsdfs that cannot be (one
+/// that is part of itself, an index of refraction below 0).
 void finish(Scene& scene);
 /// Throws Error unless finish was called since the scene was built or added to. Changes that leave all numbers of parts
 /// as they are go unnoticed, but a camera that has no view.

@@ -113,10 +113,11 @@ DVec3 take_scale(Params& p, DMat4& m) {
 void read_lens(Params& p, Camera& camera) {
   if (camera.kind != CameraKind::thinlens) return;
   camera.aperture = float(number(p, "aperture_radius", -1));
-  if (!(camera.aperture >= 0)) fail(p.loader, p.node, "needs an aperture_radius, 0 or more");
+  if (!(camera.aperture >= 0 && camera.aperture <= farthest))
+    fail(p.loader, p.node, fmt::format("needs an aperture_radius, 0 to {}", farthest));
   if (camera.aperture > 0 && std::isinf(camera.far_clip) && !has(p, "focus_distance"))
     fail(p.loader, p.node, "needs a focus_distance, as its far_clip is infinite");
-  camera.focus = float(positive(p, "focus_distance", double(camera.far_clip)));
+  camera.focus = float(positive(p, "focus_distance", camera.aperture > 0 ? double(camera.far_clip) : 1));
   if (camera.aperture > 0) return;
   camera.kind = CameraKind::perspective;
   note(p.loader, p.node, "an aperture_radius of 0 is a pinhole: rendered as perspective");
@@ -134,8 +135,11 @@ void read_clip(Params& p, Camera& camera) {
   camera.near_clip = float(number(p, "near_clip", 1e-2));
   camera.far_clip = float(far_clip(p));
   const bool flat = camera.kind == CameraKind::orthographic;
-  if (!(flat || camera.near_clip >= 0) || !(camera.far_clip > camera.near_clip))
-    fail(p.loader, p.node, "near_clip and far_clip should be 0 <= near < far");
+  if (!(camera.near_clip >= (flat ? -farthest : 0) && camera.near_clip <= farthest &&
+        camera.far_clip > camera.near_clip))
+    fail(p.loader, p.node,
+         fmt::format("near_clip and far_clip should be {} <= near < far, near at most {}",
+                     flat ? fmt::format("{}", -farthest) : "0", farthest));
 }
 
 void read_view(Params& p, Camera& camera) {

@@ -123,7 +123,10 @@ TEST(Sensors, ThinLens) {
   EXPECT_FLOAT_EQ(c.aperture, 0.1f);
   EXPECT_FLOAT_EQ(c.focus, 4);
   EXPECT_SAYS(error("", "thinlens"), "needs an aperture_radius");
-  EXPECT_SAYS(error("<float name='aperture_radius' value='-1'/>", "thinlens"), "needs an aperture_radius, 0 or more");
+  EXPECT_SAYS(error("<float name='aperture_radius' value='-1'/>", "thinlens"), "needs an aperture_radius, 0 to 1e+18");
+  EXPECT_SAYS(error("<float name='aperture_radius' value='1e20'/><float name='focus_distance' value='1'/>", "thinlens"),
+              "needs an aperture_radius, 0 to 1e+18");
+  EXPECT_EQ(error("<float name='aperture_radius' value='0'/><string name='far_clip' value='inf'/>", "thinlens"), "");
   const std::string wide = "<float name='aperture_radius' value='0.1'/>";
   EXPECT_FLOAT_EQ(read(wide, "thinlens").camera.focus, 10000);
   EXPECT_FLOAT_EQ(read(wide + "<float name='farClip' value='50'/>", "thinlens").camera.focus, 50);
