@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "ajar/core/error.h"
@@ -226,34 +227,37 @@ void check_light(const Scene& scene, uint32_t id) {
 
 constexpr float nearest_focus = 1e-12f;  // nearer, rays have no direction in single precision
 
-// Of each image, whether it holds what no light is: negative numbers, as maps of normals do, or such as are not finite.
-std::vector<bool> images_without_light(const Scene& scene) {
-  std::vector<bool> found;
-  for (const Image& image : scene.images)
-    found.push_back(
-        !std::all_of(image.floats.begin(), image.floats.end(), [](float x) { return x >= 0 && x < infinity; }));
-  return found;
+// Whether it holds what no light is: negative numbers, as maps of normals do, or such as are not finite.
+bool is_no_light(const Image& image) {
+  return !std::all_of(image.floats.begin(), image.floats.end(), [](float x) { return x >= 0 && x < infinity; });
 }
 
-// Of a slot whose texture may mix others.
-void check_images_of(const Scene& scene, const Named& part, const char* name, const Slot& slot,
-                     const std::vector<bool>& refused) {
-  if (slot.texture == none) return;
-  const Texture& t = scene.textures[slot.texture];
-  if (t.kind == TextureKind::bitmap && refused[t.image])
-    refuse(part, fmt::format("image {} of its {} holds negative numbers, or such as are not finite; give it others",
-                             t.image, name));
-  check_images_of(scene, part, name, t.color0, refused), check_images_of(scene, part, name, t.color1, refused);
+// The first image that a texture shows, itself or by those in it, and that is no light; none. found: of textures that
+// were asked for.
+uint32_t image_without_light(const Scene& scene, uint32_t texture, const std::vector<bool>& refused,
+                             std::vector<std::optional<uint32_t>>& found) {
+  if (texture == none) return none;
+  if (found[texture]) return *found[texture];
+  const Texture& t = scene.textures[texture];
+  uint32_t image = t.kind == TextureKind::bitmap && refused[t.image] ? t.image : none;
+  for (const Slot* slot : {&t.color0, &t.color1})
+    if (image == none) image = image_without_light(scene, slot->texture, refused, found);
+  found[texture] = image;
+  return image;
 }
 
 void check_images(const Scene& scene) {
-  const std::vector<bool> refused = images_without_light(scene);
-  if (std::find(refused.begin(), refused.end(), true) == refused.end()) return;
+  std::vector<bool> refused;
+  for (const Image& image : scene.images) refused.push_back(is_no_light(image));
+  std::vector<std::optional<uint32_t>> found(scene.textures.size());
+  const auto check = [&](const Named& part, const char* name, const Slot& slot) {
+    if (const uint32_t image = image_without_light(scene, slot.texture, refused, found); image != none)
+      refuse(part, fmt::format("image {} of its {} holds negative numbers, or such as are not finite; give it others",
+                               image, name));
+  };
   for (size_t i = 0; i < scene.materials.size(); ++i)
-    for (const auto& [name, slot] : reflecting_slots)
-      check_images_of(scene, {"material", i}, name, scene.materials[i].*slot, refused);
-  for (size_t i = 0; i < scene.lights.size(); ++i)
-    check_images_of(scene, {"light", i}, "radiance", scene.lights[i].radiance, refused);
+    for (const auto& [name, slot] : reflecting_slots) check({"material", i}, name, scene.materials[i].*slot);
+  for (size_t i = 0; i < scene.lights.size(); ++i) check({"light", i}, "radiance", scene.lights[i].radiance);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace ajar {
 namespace {
 
-void require_within(const char* scene, const char* parts, int n, int least, int most) {
+void require_count(const char* scene, const char* parts, int n, int least, int most) {
   if (n < least || n > most) throw Error(fmt::format("{}: {} {}; give it {} to {}", scene, n, parts, least, most));
 }
 
@@ -143,7 +143,7 @@ Scene polygon_over_plane(int corners, float height, float radius, const Rgb& rad
   set_camera(scene, {0, 0.8f * height, 3 * height}, {0, 0, 0.4f * height}, 25, size, size);
   add_quad(scene, {-50, 0, 50}, {100, 0, 0}, {0, 0, -100}, add_diffuse(scene, Rgb(reflectance)));
   Mesh mesh;
-  require_within("polygon_over_plane", "corners", corners, 3, 10'000'000);
+  require_count("polygon_over_plane", "corners", corners, 3, 10'000'000);
   for (int i = 0; i < corners; ++i) {
     const float angle = 2 * pi * float(i) / float(corners);
     mesh.positions.push_back({radius * std::sin(angle), height, radius * std::cos(angle)});
@@ -204,7 +204,7 @@ Scene glass_ball(float ior, int size) {
 }
 
 Scene mirror_chain(int mirrors, int size) {
-  require_within("mirror_chain", "mirrors", mirrors, 0, 64);
+  require_count("mirror_chain", "mirrors", mirrors, 0, 64);
   Scene scene = begin();
   Material mirror;
   mirror.kind = MaterialKind::conductor;  // eta 0, k 1: reflects everything
@@ -226,7 +226,7 @@ Scene mirror_chain(int mirrors, int size) {
 }
 
 Scene many_lights(int lights, uint64_t seed, int size) {
-  require_within("many_lights", "lights", lights, 0, 10'000'000);
+  require_count("many_lights", "lights", lights, 0, 10'000'000);
   Scene scene = room(size, true);
   add_two_boxes(scene);
   const int columns = std::max(1, int(std::ceil(std::sqrt(double(lights)))));
