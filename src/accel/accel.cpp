@@ -253,9 +253,7 @@ Accel::~Accel() = default;
 Accel::Accel(Accel&&) noexcept = default;
 Accel& Accel::operator=(Accel&&) noexcept = default;
 
-bool Accel::fits(const Scene& scene) const {
-  return data_ && data_->instance_first.size() == scene.instances.size() && data_->marks == marks_of(scene);
-}
+bool Accel::fits(const Scene& scene) const { return data_ && data_->marks == marks_of(scene); }
 
 size_t Accel::bytes() const { return size_t(std::max<int64_t>(data_->bytes.load(), 0)); }
 

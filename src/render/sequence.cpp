@@ -80,14 +80,11 @@ bool is_cut(const Scene& scene, const Accel& accel, const Fields& fields, size_t
   return fields.generation >= young_generations && share_unseen(scene, accel, fields) > 1 - known;
 }
 
-// Without lessons none would ever end.
-void require_learning(const char* who, const SequenceOptions& sequence, const RenderOptions& options) {
-  check(options);
+// Lessons of others would never end.
+void require_learning(const char* who, const RenderOptions& options) {
   if (!learns(options))
     throw Error(fmt::format("{}: {} learns no fields; take an integrator that guides, or set learn_lights", who,
                             options.integrator));
-  if (!(sequence.forget >= 0 && sequence.forget <= 1))
-    throw Error(fmt::format("{}: sequence.forget is {}; give it 0 to 1", who, sequence.forget));
 }
 
 }  // namespace
@@ -106,7 +103,9 @@ std::optional<Fields> teach(const Scene& scene, const Accel& accel, const Render
   RenderOptions teaching = options;
   teaching.limit_fireflies = teaching.techniques = false;  // of an image
   teaching.seed = teaching_seed(sequence, options.seed, frame);
-  require_learning("teach", sequence, teaching);
+  require_learning("teach", teaching);
+  if (!(sequence.forget >= 0 && sequence.forget <= 1))
+    throw Error(fmt::format("teach: sequence.forget is {}; give it 0 to 1", sequence.forget));
   RenderState state = start_render(scene, teaching);
   if (before) {
     go_on_with(scene, before->fields, moved, sequence, learn_options(teaching), state);
@@ -125,7 +124,7 @@ std::optional<Fields> teach(const Scene& scene, const Accel& accel, const Render
 }
 
 RenderState start_with(const Scene& scene, const RenderOptions& options, Fields fields) {
-  require_learning("start_with", {}, options);
+  require_learning("start_with", options);
   RenderState state = start_render(scene, options);
   fit_lights(scene.light_tree, learn_options(options), fields);
   state.learning.fields = std::move(fields);

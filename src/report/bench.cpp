@@ -277,7 +277,7 @@ bool is_of_bench(const fs::path& suite) {
 void require_free(const fs::path& folder) {
   const bool claimed = is_there((folder / "suite.json").string());
   if (claimed && is_of_bench(folder / "suite.json")) return;
-  for (const char* name : {"suite.json", "results.json", "results.csv", "report.html", "curves.svg"})
+  for (const char* name : bench_files)
     if (is_there((folder / name).string()))
       throw Error(fmt::format("{}: is of no bench, and would be written over; name another folder with -o",
                               (folder / name).string()));

@@ -31,9 +31,7 @@ void pixel_metrics(const std::array<Plane, 3>& image, const std::array<Plane, 3>
 
 // All three, or none.
 void require_whole_variance(const Picture& picture, const std::string& file) {
-  std::vector<std::string> missing;
-  for (const char* name : {"Variance.R", "Variance.G", "Variance.B"})
-    if (std::find(picture.names.begin(), picture.names.end(), name) == picture.names.end()) missing.emplace_back(name);
+  const std::vector<std::string> missing = lacking_variance(picture);
   if (!missing.empty() && missing.size() < 3)
     throw Error(fmt::format("{}: lacks {} of the three channels of its variance; write it with all, or with none", file,
                             fmt::join(missing, " and ")));
@@ -42,7 +40,7 @@ void require_whole_variance(const Picture& picture, const std::string& file) {
 // Whether it has a variance above 0 in any pixel: after one pass none is known.
 bool tells_noise(const Picture& picture) {
   if (!has_variance(picture)) return false;
-  const Picture variance = select(picture, {"Variance.R", "Variance.G", "Variance.B"});
+  const Picture variance = variance_of(picture);
   return std::any_of(variance.pixels.begin(), variance.pixels.end(), [](float v) { return v > 0; });
 }
 

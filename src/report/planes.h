@@ -4,6 +4,7 @@
 
 #include <array>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "ajar/film/picture.h"
@@ -28,6 +29,12 @@ inline Plane make_plane(int width, int height) {
 std::array<Plane, 3> rgb_planes(const Picture& picture);
 /// Relative luminance of the three, linear.
 Plane luminance_plane(const Picture& picture);
+/// Names of the channels of an image's variance.
+inline constexpr std::array variance_channels = {"Variance.R", "Variance.G", "Variance.B"};
+/// Of these, those that a picture lacks.
+std::vector<std::string> lacking_variance(const Picture& picture);
+/// A picture of them alone; throws Error where one is missing.
+Picture variance_of(const Picture& picture);
 /// Throws Error that names both sizes where they differ.
 void require_same_size(const Picture& image, const Picture& reference);
 

@@ -144,7 +144,7 @@ void pixel_figures(const std::array<Comparison, 3>& channels, ZTest& test) {
 
 void add_variance(const Picture& picture, std::array<Comparison, 3>& channels) {
   if (!has_variance(picture)) return;
-  const Picture variance = select(picture, {"Variance.R", "Variance.G", "Variance.B"});
+  const Picture variance = variance_of(picture);
   for (size_t c = 0; c < 3; ++c)
     for (size_t i = 0; i < channels[c].variance.size(); ++i)
       channels[c].variance[i] += double(variance.pixels[3 * i + c]);
@@ -152,19 +152,24 @@ void add_variance(const Picture& picture, std::array<Comparison, 3>& channels) {
 
 }  // namespace
 
-bool has_variance(const Picture& picture) {
-  const auto has = [&](const char* name) {
-    return std::find(picture.names.begin(), picture.names.end(), name) != picture.names.end();
-  };
-  return has("Variance.R") && has("Variance.G") && has("Variance.B");
+std::vector<std::string> lacking_variance(const Picture& picture) {
+  std::vector<std::string> lacking;
+  for (const char* name : variance_channels)
+    if (std::find(picture.names.begin(), picture.names.end(), name) == picture.names.end()) lacking.emplace_back(name);
+  return lacking;
 }
+
+Picture variance_of(const Picture& picture) {
+  return select(picture, {variance_channels.begin(), variance_channels.end()});
+}
+
+bool has_variance(const Picture& picture) { return lacking_variance(picture).empty(); }
 
 Picture with_variance(const Picture& image, const Picture& variance) {
   if (image.width != variance.width || image.height != variance.height)
     throw Error(fmt::format("the image has {}x{} pixels, its variance {}x{}; give the variance of this image",
                             image.width, image.height, variance.width, variance.height));
-  const Picture from = has_variance(variance) ? select(variance, {"Variance.R", "Variance.G", "Variance.B"})
-                                              : select(variance, {"R", "G", "B"});
+  const Picture from = has_variance(variance) ? variance_of(variance) : select(variance, {"R", "G", "B"});
   Picture both{image.width, image.height, {}, {}};
   std::vector<size_t> kept;
   for (size_t c = 0; c < image.names.size(); ++c)
@@ -172,7 +177,7 @@ Picture with_variance(const Picture& image, const Picture& variance) {
       kept.push_back(c);
       both.names.push_back(image.names[c]);
     }
-  for (const char* name : {"Variance.R", "Variance.G", "Variance.B"}) both.names.emplace_back(name);
+  both.names.insert(both.names.end(), variance_channels.begin(), variance_channels.end());
   for (size_t i = 0; i < from.pixels.size() / 3; ++i) {
     for (const size_t c : kept) both.pixels.push_back(image.pixels[i * image.names.size() + c]);
     both.pixels.insert(both.pixels.end(), {from.pixels[3 * i], from.pixels[3 * i + 1], from.pixels[3 * i + 2]});

@@ -29,6 +29,9 @@ struct BenchOptions {
   BenchWatch watch;                  ///< may be empty
 };
 
+/// What it writes beside the folders runs, images, techniques and fields.
+inline constexpr const char* bench_files[] = {"suite.json", "results.json", "results.csv", "report.html", "curves.svg"};
+
 /// Makes the references that are missing, renders every method on every scene with every seed, the methods of a scene
 /// and seed in turns, and writes results.json, results.csv, images and runs. When the watch stops it, writes what is
 /// done and "interrupted": true; called again it goes on. A scene whose reference is refused is left out, and

@@ -32,7 +32,7 @@ struct Expansion {
   size_t line = 1;  // of the file's own text
 
   [[noreturn]] void fail(std::string_view entity, const std::string& what) const {
-    throw Error(one_line(fmt::format("{}:{}: the entity &{}; {}", name, line, entity.substr(0, 80), what)));
+    throw Error(fmt::format("{}:{}: the entity &{}; {}", name, line, entity.substr(0, 80), what));
   }
 };
 

@@ -86,7 +86,7 @@ void check_unchanged(const Loader& loader) {
 }
 
 void fail(const Loader& loader, const Node& node, const std::string& text) {
-  throw Error(one_line(place(loader.document, node) + ": " + text));
+  throw Error(place(loader.document, node) + ": " + text);
 }
 
 void note(Loader& loader, const Node& node, const std::string& text) {

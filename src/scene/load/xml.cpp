@@ -54,8 +54,8 @@ uint32_t line_at(const Source& s, ptrdiff_t offset) {
 }
 
 [[noreturn]] void fail(const Reader& r, const Source& s, const pugi::xml_node& node, const std::string& text) {
-  throw Error(one_line(fmt::format("{}:{}: <{}>: {}", r.document.files[s.file], line_at(s, node.offset_debug()),
-                                   shortened(node.name()), text)));
+  throw Error(fmt::format("{}:{}: <{}>: {}", r.document.files[s.file], line_at(s, node.offset_debug()),
+                          shortened(node.name()), text));
 }
 
 // What is wrong with a file as a whole is told with the element that names it.
@@ -90,8 +90,8 @@ void parse(Document& document, pugi::xml_document& xml, const Source& s, const s
   if (result.status == pugi::status_no_document_element || s.text.find_first_not_of(" \t\r\n") == std::string::npos)
     throw Error(fmt::format("{}: holds no XML element; a scene begins with <scene version=\"3.0.0\">", name));
   if (!result)
-    throw Error(one_line(fmt::format("{}:{}: not well-formed XML: {}; repair what stands there", document.files[s.file],
-                                     line_at(s, result.offset), result.description())));
+    throw Error(fmt::format("{}:{}: not well-formed XML: {}; repair what stands there", document.files[s.file],
+                            line_at(s, result.offset), result.description()));
   tell_second(document, xml.document_element(), s);
 }
 
