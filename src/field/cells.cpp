@@ -3,27 +3,10 @@
 #include <algorithm>
 
 #include "ajar/core/sampler.h"
+#include "shortcuts.h"
 
 namespace ajar {
 namespace {
-
-// Bits of a key, from the lowest: x, y, z (17 each), normal (5), compartment (4), level + 1 (4).
-constexpr int bits = 17, most_coordinate = (1 << bits) - 1;
-
-constexpr int at_normal = 3 * bits, at_compartment = at_normal + 5, at_level = at_compartment + 4;
-
-// kind: normal's bin, and compartment above it.
-CellKey make_key(int level, uint32_t kind, const glm::uvec3& c) {
-  return (uint64_t(level + 1) << at_level) | (uint64_t(kind) << at_normal) | (uint64_t(c.z) << 2 * bits) |
-         (uint64_t(c.y) << bits) | c.x;
-}
-
-glm::uvec3 coordinates_of(CellKey key) {
-  return {key & most_coordinate, (key >> bits) & most_coordinate, (key >> 2 * bits) & most_coordinate};
-}
-
-// Normal's bin and compartment, as make_key has them: the same for a cell's parts.
-uint32_t kind_of(CellKey key) { return uint32_t(key >> at_normal) & 511; }
 
 // Where a key is among the slots, or the free slot where it would be.
 size_t slot_of(const CellTable& table, CellKey key) {
@@ -37,8 +20,6 @@ const CellTable::Slot* find_slot(const CellTable& table, CellKey key) {
   const CellTable::Slot& slot = table.slots[slot_of(table, key)];
   return slot.key == key ? &slot : nullptr;
 }
-
-uint32_t octant_of(const glm::uvec3& c) { return (c.x & 1) | (c.y & 1) << 1 | (c.z & 1) << 2; }
 
 // What a cell's parent has of it; null where no parent is divided.
 CellTable::Part* entry_in_parent(CellTable& table, CellKey key) {
@@ -54,29 +35,21 @@ Vec3 scaled(const CellTable& table, const Vec3& p) {
 
 // Whether keys reach as far.
 bool in_range(const Vec3& scaled) {
-  return std::min({scaled.x, scaled.y, scaled.z}) >= 0 && std::max({scaled.x, scaled.y, scaled.z}) < most_coordinate;
+  const auto is_in = [](float x) { return (x >= 0) & (x < float(most_coordinate)); };
+  return is_in(scaled.x) & is_in(scaled.y) & is_in(scaled.z);
 }
 
 glm::uvec3 coordinates(const Vec3& scaled) {
-  return glm::uvec3(glm::clamp(scaled, Vec3(0), Vec3(float(most_coordinate))));
-}
-
-// Number of the cube of level 0 among those that walls are looked for in; past the last one elsewhere.
-size_t top_cube(const CellTable& table, const glm::uvec3& finest) {
-  const glm::uvec3 from_first = (finest >> uint32_t(most_cell_levels)) - table.first;  // wraps around before it
-  const glm::uvec3 c = glm::min(from_first, glm::uvec3(top_cubes));
-  if (c.x == top_cubes || c.y == top_cubes || c.z == top_cubes) return size_t(top_cubes) * top_cubes * top_cubes;
-  return (size_t(c.z) * top_cubes + c.y) * top_cubes + c.x;
+  const auto cut = [](float x) { return uint32_t(std::min(std::max(0.0f, x), float(most_coordinate))); };
+  return {cut(scaled.x), cut(scaled.y), cut(scaled.z)};
 }
 
 // Which part of its cube of level 0 a point is in.
-uint32_t compartment_of(const CellTable& table, const glm::uvec3& finest, const Vec3& p) {
-  if (table.cuts.empty()) return 0;
-  const size_t cube = top_cube(table, finest);
+uint32_t compartment_of(const CellTable& table, size_t cube, const Vec3& p) {
   int32_t at = cube < table.compartments.size() ? table.compartments[cube] : ~0;
   while (at >= 0) {
     const CellCut& cut = table.cuts[size_t(at)];
-    at = p[cut.axis] < cut.at ? cut.below : cut.above;
+    at = component(p, cut.axis) < cut.at ? cut.below : cut.above;
   }
   return uint32_t(~at);
 }
@@ -113,7 +86,7 @@ Place find_probe(const CellTable& table, const Vec3& p, const Vec3& n) {
   search(s, 0, table.probes.size());
   if (s.found == none) return {};
   const bool back = glm::dot(table.probes[s.found].n, n) < 0;
-  const CellKey key = make_key(0, back, {s.found & most_coordinate, s.found >> bits, 0});
+  const CellKey key = make_key(0, {back, 0}, {s.found & most_coordinate, s.found >> coordinate_bits, 0});
   const CellTable::Slot* slot = find_slot(table, key);
   return slot ? Place{slot->at.cell, 0} : Place{none, key};
 }
@@ -138,7 +111,7 @@ void place(CellTable& table, const CellTable::Slot& slot) { table.slots[slot_of(
 }  // namespace
 
 uint32_t normal_bin(const Vec3& n) {
-  const auto third = [](float x) { return uint32_t(x > 1 / 3.0f ? 2 : x < -1 / 3.0f ? 0 : 1); };
+  const auto third = [](float x) { return uint32_t(!(x < -1 / 3.0f)) + uint32_t(x > 1 / 3.0f); };
   return third(n.x) + 3 * third(n.y) + 9 * third(n.z);
 }
 
@@ -163,15 +136,20 @@ CellTable make_probe_table(std::vector<Probe> probes, double area) {
   return t;
 }
 
-size_t top_cube(const CellTable& table, const Vec3& p) { return top_cube(table, coordinates(scaled(table, p))); }
+size_t top_cube(const CellTable& table, const Vec3& p) {
+  return top_cube(table, coordinates(scaled(table, p)) >> uint32_t(most_cell_levels));
+}
 
 Place find(const CellTable& table, const Vec3& p, const Vec3& n) {
   if (!table.probes.empty()) return find_probe(table, p, n);
   const Vec3 at_finest = scaled(table, p);
   if (table.slots.empty() || !in_range(at_finest)) return {};
-  const glm::uvec3 c = coordinates(at_finest);
-  const uint32_t kind = normal_bin(n) | compartment_of(table, c, p) << 5;
-  const CellKey top = make_key(0, kind, c >> uint32_t(most_cell_levels));
+  const glm::uvec3 c(at_finest);
+  const glm::uvec3 at_top = c >> uint32_t(most_cell_levels);
+  const size_t cube = top_cube(table, at_top);
+  const CellKind kind{normal_bin(n), compartment_of(table, cube, p)};
+  if (Place at; follow(table.shortcuts, cube, kind, c, at)) return at;
+  const CellKey top = make_key(0, kind, at_top);
   const CellTable::Slot* slot = find_slot(table, top);
   if (!slot) return {none, top};
   CellTable::Part at = slot->at;
@@ -185,6 +163,7 @@ Place find(const CellTable& table, const Vec3& p, const Vec3& n) {
 }
 
 void insert(CellTable& table, CellKey key, uint32_t cell) {
+  table.shortcuts = {};
   if (2 * (table.used + 1) > table.slots.size()) {
     std::vector<CellTable::Slot> old(2 * table.slots.size());
     old.swap(table.slots);
@@ -204,6 +183,7 @@ uint32_t cell_of(const CellTable& table, CellKey key) {
 void set_divided(CellTable& table, CellKey key) {
   CellTable::Part& at = table.slots[slot_of(table, key)].at;
   if (at.parts != 0) return;
+  table.shortcuts = {};
   if (table.parts.empty()) table.parts.resize(1);
   at.parts = uint32_t(table.parts.size());
   std::array<CellTable::Part, 8>& parts = table.parts.emplace_back();
@@ -221,7 +201,7 @@ int level_of(CellKey key) { return int(key >> at_level) - 1; }
 Box cube_of(const CellTable& table, CellKey key) {
   const glm::uvec3 c = coordinates_of(key);
   if (!table.probes.empty()) {
-    const Vec3 p = table.probes[std::min(size_t(c.x) | size_t(c.y) << bits, table.probes.size() - 1)].p;
+    const Vec3 p = table.probes[std::min(size_t(c.x) | size_t(c.y) << coordinate_bits, table.probes.size() - 1)].p;
     return {p, p};
   }
   const float edge = table.edge(level_of(key));

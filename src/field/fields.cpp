@@ -9,11 +9,9 @@ namespace {
 
 // Where p is beside the cell's centre, in its tangent plane, over R: well within the unit disk, so that p is within the
 // sphere and every direction leaves it once.
-Vec2 shift(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p) {
-  const float near = field.cells[cell].near;
-  if (near == 0) return Vec2(0);
+inline Vec2 shift(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p) {
   const Cell& c = fields.cells[cell];
-  const Vec3 beside = near * (p - c.center);
+  const Vec3 beside = field.cells[cell].near * (p - c.center);
   const Vec2 d(glm::dot(c.frame.s, beside), glm::dot(c.frame.t, beside));
   const float l2 = glm::dot(d, d);
   return l2 > sqr(0.9f) ? d * (0.9f / std::sqrt(l2)) : d;
@@ -30,7 +28,7 @@ Vec3 from_center(const Fields& fields, const Field& field, uint32_t cell, const 
 }
 
 // As it is seen from the cell's centre; see centered.
-Vec3 shifted(const Vec2& d, const Vec3& local, float& density) {
+inline Vec3 shifted(const Vec2& d, const Vec3& local, float& density) {
   const float along = d.x * local.x + d.y * local.y;
   const float cosine = std::sqrt(along * along + 1 - glm::dot(d, d)), t = cosine - along;
   density = t * t / cosine;
@@ -86,6 +84,7 @@ float pdf(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p
   const Vec3 local = fields.cells[cell].frame.to_local(w);
   if (!(local.z > 0)) return 0;
   const uint32_t root = field.cells[cell].root;
+  __builtin_prefetch(&field.nodes[root]);  // which stratum of it is known much later
   if (fields.structure != Structure::adaptive) return patch_density(field.nodes, root, local);
   float per_center, stretch;
   const Vec2 at = to_square(shifted(shift(fields, field, cell, p), local, stretch), per_center);
@@ -95,8 +94,12 @@ float pdf(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p
   const float strata = (1 - o.share) * per_angle;
   Crossing on;
   if (!cross(fields.table.portals[o.portal], o.portal, p, w, on)) return strata * density(field.nodes, root, at);
-  const Vec2 d = densities(field.nodes, {root, at}, {field.portals[o.cell].root, on.square});
-  return strata * d.x + o.share * on.density * d.y;  // (G11), (G12)
+  const StrataNode* nodes = field.nodes.data();
+  Way down(nodes, root, at), beyond(nodes, field.portals[o.cell].root, on.square);
+  do {  // both at once: what one waits for, the other works in
+    down.go_on(), beyond.go_on();
+  } while (int(down.goes_on()) | int(beyond.goes_on()));
+  return strata * down.density() + o.share * on.density * beyond.density();  // (G11), (G12)
 }
 
 Vec3 sample(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p, Vec2 u, float& density) {
@@ -117,8 +120,8 @@ size_t bytes(const Fields& f) {
            x.nodes.size() * (sizeof(StrataNode) + 32 * sizeof(UFloat16));
   };
   return f.table.slots.size() * sizeof(CellTable::Slot) + f.table.parts.size() * sizeof(f.table.parts[0]) +
-         f.table.probes.size() * sizeof(Probe) + f.cells.size() * sizeof(Cell) + bytes(f.views) + of(f.q) + of(f.w) +
-         of(f.disk) + bytes(f.lights) + bytes(f.starts);
+         f.table.probes.size() * sizeof(Probe) + f.cells.size() * sizeof(Cell) +
+         bytes(f.views) + of(f.q) + of(f.w) + of(f.disk) + bytes(f.lights) + bytes(f.starts);
 }
 
 }  // namespace ajar

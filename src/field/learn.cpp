@@ -323,6 +323,7 @@ Fields learn(const Fields& fields, const Training& training, const Sightings& si
   next.structure = fields.structure, next.rule = fields.rule;
   next.generation = fields.generation + 1;
   next.table = fields.table;
+  next.table.shortcuts = {};
   next.cells = fields.cells;
   next.lines = fields.lines;
   const std::vector<bool> moved = move_portals(training, next);
@@ -339,6 +340,7 @@ Fields learn(const Fields& fields, const Training& training, const Sightings& si
   }
   next.regions = fields.regions;
   add_cells(next, sightings, options);
+  if (next.structure == Structure::adaptive) shorten(next.table);
   next.views = learn_views(fields.views, training.views,
                            std::max(fields.views.regions, std::min(next.regions, affordable_regions(options))), 0.9f);
   restrict_to(next, options.guided);

@@ -16,10 +16,6 @@ constexpr size_t least_cuts = 4;
 // Where lines through a wall are closest together, heavier ones count as this.
 constexpr double heaviest_line = 1024;
 
-// What the axes beside a given one are.
-int first_beside(int axis) { return (axis + 1) % 3; }
-int second_beside(int axis) { return (axis + 2) % 3; }
-
 struct Wall {
   size_t cuts = 0;
   int axis = 0;
@@ -72,7 +68,7 @@ bool add_portals(Fields& fields) {
 }
 
 void record_line(const Portal& portal, const Vec3& p, const Vec3& w, double weight, int64_t* sums) {
-  const int a = portal.axis, beside[2] = {first_beside(a), second_beside(a)};
+  const int a = portal.axis, beside[2] = {first_beside[a], second_beside[a]};
   const double along = w[a], carried = std::min(weight, heaviest_line) * along * along;
   // Not cut, which would depend on the order: after some 10^8 of the heaviest it starts again at the other end.
   const auto put_signed = [&](size_t i, double x) {
@@ -108,39 +104,13 @@ float narrowest(const Portal& portal, const double* sums, float most) {
   return portal.wall + float(found);
 }
 
-bool cross(const Portal& portal, uint32_t number, const Vec3& p, const Vec3& w, Crossing& out) {
-  const int a = portal.axis, b = first_beside(a), c = second_beside(a);
-  const float per_axis = 1 / w[a], scale = 1 / portal.radius;
-  out.distance = (portal.center[a] - p[a]) * per_axis;
-  if (!(out.distance > 0 && out.distance < infinity)) return false;
-  const float x = (p[b] - portal.center[b] + out.distance * w[b]) * scale,
-              y = (p[c] - portal.center[c] + out.distance * w[c]) * scale;
-  if (!(x * x + y * y < 1)) return false;
-  out.cell = 2 * number + (per_axis > 0);
-  float per_disk;
-  out.square = to_square({x, y, 1}, per_disk);
-  out.density = per_disk * sqr(out.distance * scale) * std::abs(per_axis);  // (G12)
-  return true;
-}
-
-Opening opening(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p) {
-  const FieldCell& c = field.cells[cell];
-  if (c.portal == FieldCell::no_portal) return {};
-  const Portal& portal = fields.table.portals[c.portal];
-  const float across = portal.center[portal.axis] - p[portal.axis];
-  // In the plane directions do not tell places.
-  if (!(std::abs(across) > 1e-3f * portal.radius)) return {};
-  const uint32_t seen = 2 * uint32_t(c.portal) + (across > 0);
-  return {c.portal, seen, c.through * field.portals[seen].mix};
-}
-
 Vec3 sample(const Fields& fields, const Field& field, const Opening& opening, const Vec3& p, const Vec2& u) {
   const Portal& portal = fields.table.portals[opening.portal];
   float over_square;
   const Vec3 at = from_square(sample(field.nodes, field.portals[opening.cell].root, u, over_square));
   Vec3 to = portal.center - p;
-  to[first_beside(portal.axis)] += portal.radius * at.x;
-  to[second_beside(portal.axis)] += portal.radius * at.y;
+  to[first_beside[portal.axis]] += portal.radius * at.x;
+  to[second_beside[portal.axis]] += portal.radius * at.y;
   return glm::normalize(to);
 }
 

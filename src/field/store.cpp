@@ -8,6 +8,7 @@
 #include "ajar/core/error.h"
 #include "ajar/field/portals.h"
 #include "ajar/scene/light.h"
+#include "keys.h"
 
 namespace ajar {
 namespace {
@@ -16,7 +17,9 @@ constexpr FileKind fields_kind = {"AJARfd13", "file of fields", "make one with -
                                   "learn the fields again with --save-fields"};
 
 bool is_amount(float x) { return x >= 0 && x < infinity; }
-bool is_cell_key(CellKey key) { return level_of(key) >= 0 && level_of(key) <= most_cell_levels; }
+bool is_cell_key(CellKey key) {
+  return level_of(key) >= 0 && level_of(key) <= most_cell_levels && kind_of(key).normal < normal_bins;
+}
 
 // One list of members for both ways, one value each: structs may have gaps, whose bytes mean nothing.
 template <class Io, class Part>
@@ -37,6 +40,11 @@ template <class Io, class Part>
 void portal_members(Io& io, Part& p) {
   io.value(p.axis), io.value(p.wall), io.value(p.center), io.value(p.radius);
 }
+template <class Io, class Node>
+void node_members(Io& io, Node& n) {
+  io.bytes(n.before, 16 * sizeof(n.before[0]));  // the last is always 0
+  io.value(n.divided), io.value(n.children);
+}
 static_assert(sizeof(FieldCell) == 32 && sizeof(StrataNode) == 40 && sizeof(Cell) == 64 && sizeof(Sighting) == 32 &&
                   sizeof(Probe) == 28 && sizeof(Portal) == 24,
               "a member was added or taken away: list it here and raise the versions of the files");
@@ -46,7 +54,7 @@ void write(Writer& w, const Field& f) {
   for (const std::vector<FieldCell>* cells : {&f.cells, &f.portals})
     for (const FieldCell& c : *cells) cell_members(w, c);
   w.value(uint64_t(f.nodes.size()));
-  for (const StrataNode& n : f.nodes) w.value(n.before), w.value(n.divided), w.value(n.children);
+  for (const StrataNode& n : f.nodes) node_members(w, n);
   w.bytes(f.mean.data(), f.mean.size() * sizeof(UFloat16));
   w.bytes(f.weight.data(), f.weight.size() * sizeof(UFloat16));
 }
@@ -105,7 +113,7 @@ void read(Reader& r, Structure structure, size_t cells, size_t portals, Field& f
     }
   f.nodes.resize(r.count(sizeof(StrataNode) - 2 + 32 * sizeof(UFloat16)));
   for (StrataNode& n : f.nodes) {
-    r.value(n.before), r.value(n.divided), r.value(n.children);
+    node_members(r, n);
     r.require(structure != Structure::adaptive || is_sound(n, 0));
   }
   f.mean.resize(16 * f.nodes.size());
@@ -222,8 +230,7 @@ void read_compartments(Reader& r, CellTable& table) {
   const auto leads_on = [&](int32_t to, int32_t from) {
     return to >= 0 ? to > from && size_t(to) < table.cuts.size() : ~to < most_compartments;
   };
-  const size_t cubes = size_t(top_cubes) * top_cubes * top_cubes;
-  r.require(table.compartments.empty() ? table.cuts.empty() : table.compartments.size() == cubes);
+  r.require(table.compartments.empty() ? table.cuts.empty() : table.compartments.size() == all_top_cubes);
   for (const int32_t c : table.compartments) r.require(leads_on(c, -1));
   for (size_t i = 0; i < table.cuts.size(); ++i) {
     const CellCut& c = table.cuts[i];
@@ -242,9 +249,11 @@ void read_cells(Reader& r, Fields& fields) {
     r.require(is_cell_key(c.key) && cell_of(fields.table, c.key) == none && is_sound(c.frame) && is_amount(c.seen) &&
               c.region < most_regions);
     c.center = middle_of(fields.table, c.key);
+    r.require(is_finite(c.center));
     insert(fields.table, c.key, i);
     if (divided) set_divided(fields.table, c.key);
   }
+  if (fields.structure == Structure::adaptive) shorten(fields.table);
 }
 
 }  // namespace
@@ -286,6 +295,7 @@ void read(Reader& r, Fields& fields) {
   read_probes(r, fields.table);
   read_compartments(r, fields.table);
   read_portals(r, fields.table, fields.lines);
+  r.require(fields.structure == Structure::adaptive || fields.table.portals.empty());
   read_cells(r, fields);
   const size_t portals = fields.table.portals.size();
   read(r, fields.structure, fields.cells.size(), portals, fields.q);

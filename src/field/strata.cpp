@@ -20,43 +20,7 @@ int choose(const StrataNode& node, double& x, float& share) {
   return i;
 }
 
-// A point's way down a tree, with the density over the square that the strata so far have.
-struct Way {
-  const StrataNode* node;
-  Descent down;
-  int stratum = 0;
-  float density = 1;
-
-  Way(const std::vector<StrataNode>& nodes, const TreePlace& place) : node(&nodes[place.root]), down(place.at) {
-    enter();
-  }
-  bool goes_on() const { return node->is_divided(stratum); }
-  void go_on(const std::vector<StrataNode>& nodes) {
-    node = &nodes[node->child(stratum)];
-    enter();
-  }
-  void enter() {
-    stratum = down.next();
-    density *= float(node->steps(stratum)) * 0x1p-12f;
-  }
-};
-
 }  // namespace
-
-float density(const std::vector<StrataNode>& nodes, uint32_t root, const Vec2& at) {
-  Way way(nodes, {root, at});
-  while (way.goes_on()) way.go_on(nodes);
-  return way.density;
-}
-
-Vec2 densities(const std::vector<StrataNode>& nodes, const TreePlace& a, const TreePlace& b) {
-  Way to_a(nodes, a), to_b(nodes, b);
-  while (to_a.goes_on() || to_b.goes_on()) {
-    if (to_a.goes_on()) to_a.go_on(nodes);
-    if (to_b.goes_on()) to_b.go_on(nodes);
-  }
-  return {to_a.density, to_b.density};
-}
 
 Vec2 sample(const std::vector<StrataNode>& nodes, uint32_t root, const Vec2& u, float& density) {
   double x = double(u.x) * 65536;

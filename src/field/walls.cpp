@@ -11,6 +11,7 @@
 #include "ajar/scene/bsdf.h"
 #include "ajar/scene/geometry.h"
 #include "ajar/scene/light.h"
+#include "keys.h"
 
 namespace ajar {
 namespace {
@@ -226,7 +227,7 @@ int32_t cut(const Sight& s, const std::vector<uint32_t>& of, float edge, Sides& 
 void cut_along_walls(const Scene& scene, const Accel& accel, CellTable& table) {
   const Found found = find_spots(scene, accel);
   const Ball part = focus_on_middle(scene, found, table);
-  table.compartments.assign(size_t(top_cubes) * top_cubes * top_cubes, ~0);
+  table.compartments.assign(all_top_cubes, ~0);
   const std::vector<std::vector<Spot>> cubes = spots_of_cubes(found, table);
   std::vector<std::vector<CellCut>> cuts(cubes.size());
   parallel_for(cubes.size(), [&](size_t c) {
@@ -246,6 +247,7 @@ void cut_along_walls(const Scene& scene, const Accel& accel, CellTable& table) {
       table.cuts.push_back(k);
     }
   }
+  table.shortcuts = {};
   table.portals = find_portals(table.cuts, part.center, part.radius, table.width);
 }
 

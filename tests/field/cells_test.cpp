@@ -6,6 +6,7 @@
 #include <set>
 
 #include "ajar/core/sampler.h"
+#include "ajar/core/warp.h"
 
 namespace ajar {
 namespace {
@@ -127,6 +128,60 @@ TEST(Cells, AnswerTheSameInWhateverOrderTheyCame) {
     const Place a = find(grown, p, north), b = find(stored, p, north);
     ASSERT_EQ(a.cell, b.cell);
     ASSERT_EQ(a.missing, b.missing);
+  }
+}
+
+// Four levels deep, some parts unknown, walls across some cubes: the same with shortcuts as without.
+TEST(Cells, ShortcutsLeadToTheSame) {
+  CellTable t = table();
+  t.compartments.assign(size_t(top_cubes) * top_cubes * top_cubes, ~0);
+  for (size_t i = 0; i < t.compartments.size(); i += 3) {
+    const int32_t first = int32_t(t.cuts.size());
+    t.cuts.push_back({float(i % 5), int32_t(i % 3), ~1, first + 1}), t.cuts.push_back({2.2f, 1, ~0, ~15});
+    t.compartments[i] = first;
+  }
+  Sampler sampler = make_sampler(SamplerKind::independent, 1, Side::camera, 0, 0);
+  const auto anywhere = [&] {
+    const Vec3 u = 2.0f * Vec3(sampler.next2(), sampler.next1()) - 1.0f;
+    return Vec3(1, 2, 3) + (sampler.next1() < 0.2f ? 7.0f : 1.5f) * u;  // and some beyond the cubes that walls cut
+  };
+  const auto any_normal = [&] { return sampler.next1() < 0.8f ? north : to_sphere(sampler.next2()); };
+  uint32_t cells = 0;
+  for (int i = 0; i < 60000; ++i) {
+    const CellKey missing = find(t, anywhere(), any_normal()).missing;
+    if (missing == 0) continue;
+    insert(t, missing, cells);
+    if (cells++ % 3 != 2 && level_of(missing) < 4) set_divided(t, missing);
+  }
+  CellTable quick = t;
+  shorten(quick);
+  ASSERT_GT(quick.shortcuts.leaves.size(), 1000u);
+  size_t known = 0, of_level[most_cell_levels + 1] = {};
+  for (int i = 0; i < 60000; ++i) {
+    const Vec3 p = anywhere(), n = any_normal();
+    const Place slow = find(t, p, n), fast = find(quick, p, n);
+    ASSERT_EQ(slow.cell, fast.cell);
+    ASSERT_EQ(slow.missing, fast.missing);
+    if (slow.missing) ++of_level[level_of(slow.missing)];
+    known += slow.cell != none;
+  }
+  EXPECT_GT(known, 30000u);
+  for (int level = 0; level <= 4; ++level) EXPECT_GT(of_level[level], 10u) << level;
+}
+
+TEST(Cells, NewCellsAreFoundBesideShortcuts) {  // down to the last level
+  CellTable t = table();
+  const Vec3 p(1.2f, 2.3f, 3.4f);
+  for (uint32_t level = 0; level < uint32_t(most_cell_levels); ++level) {
+    shorten(t);
+    const Place at = find(t, p, north);
+    ASSERT_EQ(level_of(at.missing), int(level));
+    insert(t, at.missing, level);
+    EXPECT_EQ(find(t, p, north).cell, level);
+    shorten(t);
+    EXPECT_EQ(find(t, p, north).missing, 0u);
+    set_divided(t, at.missing);
+    EXPECT_EQ(level_of(find(t, p, north).missing), int(level) + 1);
   }
 }
 

@@ -91,6 +91,8 @@ TEST_P(StoredStructures, FieldsComeBack) {
   EXPECT_EQ(b.structure, GetParam());
   EXPECT_EQ(b.rule, Rule::returned);
   EXPECT_EQ(bytes(a), bytes(b));
+  EXPECT_EQ(a.table.shortcuts.leaves.size(), b.table.shortcuts.leaves.size());
+  EXPECT_EQ(!b.table.shortcuts.leaves.empty(), GetParam() == Structure::adaptive);
   EXPECT_EQ(a.regions, b.regions);
   EXPECT_GT(a.views.regions, 4u);
   EXPECT_LT(*std::min_element(a.views.chance.begin(), a.views.chance.end()), 204) << "regions know something";
@@ -223,6 +225,7 @@ TEST_F(Store, WhatCannotBeIsAnError) {
       {"shares that do not begin at 0", [](Fields& f, uint32_t, uint32_t p) { f.q.nodes[p].before[0] = 1; }},
       {"key of no level", [](Fields& f, uint32_t i, uint32_t) { f.cells[i].key = 5; }},
       {"key of a level too deep", [](Fields& f, uint32_t i, uint32_t) { f.cells[i].key |= 15ull << 60; }},
+      {"key of a normal that is none", [](Fields& f, uint32_t i, uint32_t) { f.cells[i].key |= 31ull << 51; }},
       {"key twice", [](Fields& f, uint32_t i, uint32_t) { f.cells[i].key = f.cells[0].key; }},
       {"frame that is none", [](Fields& f, uint32_t i, uint32_t) { f.cells[i].frame.s = f.cells[i].frame.n; }},
       {"frame of NaN", [](Fields& f, uint32_t i, uint32_t) { f.cells[i].frame.t = Vec3(std::nanf("")); }},
@@ -232,6 +235,7 @@ TEST_F(Store, WhatCannotBeIsAnError) {
       {"weight of NaN", [](Fields& f, uint32_t, uint32_t p) { f.w.weight[16 * p].bits = 0xffff; }},
       {"infinite total", [](Fields& f, uint32_t i, uint32_t) { f.q.cells[i].total = infinity; }},
       {"unit of 0", [](Fields& f, uint32_t, uint32_t) { f.q.unit = 0; }},
+      {"cells out of all bounds", [](Fields& f, uint32_t, uint32_t) { f.table.width = 1e37f; }},
       {"no width", [](Fields& f, uint32_t, uint32_t) { f.table.width = 0; }},
       {"origin of NaN", [](Fields& f, uint32_t, uint32_t) { f.table.origin.y = std::nanf(""); }},
       {"region beyond the most", [](Fields& f, uint32_t i, uint32_t) { f.cells[i].region = most_regions; }},
@@ -355,6 +359,11 @@ TEST_F(Store, PatchesThatCannotBeAreAnError) {
       {"a divided segment", [](Fields& f, StrataNode& root) { f.q.nodes[root.child(15)].divided = 1; }},
       {"a probe nowhere", [](Fields& f, StrataNode&) { f.table.probes[5].p.x = std::nanf(""); }},
       {"an axis that is none", [](Fields& f, StrataNode&) { f.table.probes[5].axis = 3; }},
+      {"a portal",
+       [](Fields& f, StrataNode&) {
+         f.table.portals.emplace_back();
+         add_portals(f);
+       }},
   };
   for (const Case& c : cases) {
     Fields bad = good;

@@ -171,14 +171,39 @@ TEST(Strata, DensityIsTheProductOfShares) {
   EXPECT_NEAR(density(nodes, 0, Vec2(0.26f, 0.01f)), 1400.0 / 4096, 1e-6);
 }
 
-TEST(Strata, DensitiesOfTwoTreesAreThoseOfEach) {
-  const auto nodes = nested();
+// Level by level, up to the leaf.
+float slow_density(const std::vector<StrataNode>& nodes, uint32_t node, const Vec2& at) {
+  Descent down(at);
+  int i = down.next();
+  float product = float(nodes[node].steps(i)) / 4096;
+  while (nodes[node].is_divided(i)) {
+    node = nodes[node].child(i);
+    i = down.next();
+    product *= float(nodes[node].steps(i)) / 4096;
+  }
+  return product;
+}
+
+// A chain down to the last level, below its last stratum each time.
+std::vector<StrataNode> deepest() {
+  std::vector<StrataNode> nodes(most_levels, slope());
+  for (uint32_t i = 0; i + 1 < nodes.size(); ++i) nodes[i].divided = 1u << 15, nodes[i].children = i + 1;
+  return nodes;
+}
+
+TEST(Strata, ThereIsNothingBelowALeaf) {
   Sampler sampler = make_sampler(SamplerKind::independent, 2, Side::camera, 0, 0);
-  for (uint32_t a = 0; a < 4; ++a)
-    for (uint32_t b = 0; b < 4; ++b)
-      for (int i = 0; i < 1000; ++i) {
-        const Vec2 u = sampler.next2(), v = sampler.next2();
-        ASSERT_EQ(densities(nodes, {a, u}, {b, v}), Vec2(density(nodes, a, u), density(nodes, b, v))) << a << ' ' << b;
+  for (const auto& nodes : {nested(), deepest()})
+    for (uint32_t root = 0; root < nodes.size(); ++root)
+      for (int i = 0; i < 4000; ++i) {
+        const Vec2 u = sampler.next2(), at = i % 4 == 0 ? u : Vec2(1) - u * std::ldexp(1.0f, -(i % 12));
+        const Vec2 in = glm::clamp(at, Vec2(0), Vec2(one_minus_epsilon));
+        ASSERT_EQ(density(nodes, root, in), slow_density(nodes, root, in)) << root << ' ' << in.x << ' ' << in.y;
+        // A tree that ends before another, which is walked beside it, stays what it is.
+        Way way(nodes.data(), root, in), once(nodes.data(), root, in);
+        for (int pair = 0; pair < 3; ++pair) way.go_on();
+        while (once.goes_on()) once.go_on();
+        ASSERT_EQ(way.density(), once.density());
       }
 }
 

@@ -79,6 +79,18 @@ TEST(Walls, ACellBehindAWallKeepsItsCompartmentOnAllLevels) {
   }
 }
 
+// Cells that were there before.
+TEST(Walls, CutShortcutsOff) {
+  const Scene scene = two_rooms(5);
+  const Vec3 p(1.8f, 0, 0.06f), n(0, 1, 0);
+  CellTable t = make_cell_table(scene.center, scene.radius);
+  insert(t, find(t, p, n).missing, 0);
+  shorten(t);
+  ASSERT_FALSE(t.shortcuts.leaves.empty());
+  cut_along_walls(scene, Accel(scene), t);
+  EXPECT_TRUE(t.shortcuts.leaves.empty());
+}
+
 TEST(Walls, AreTheSameEachTime) {
   const Scene scene = two_rooms(20);
   const CellTable a = cut_table(scene), b = cut_table(scene);

@@ -9,6 +9,7 @@ namespace ajar::kit {
 
 inline void copy_walls(const CellTable& from, CellTable& to) {
   to.cuts = from.cuts, to.compartments = from.compartments, to.portals = from.portals;
+  to.shortcuts = {};
 }
 
 }  // namespace ajar::kit

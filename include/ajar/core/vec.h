@@ -31,6 +31,8 @@ inline double sqr(double x) { return x * x; }  // in double: a luminance of 1e20
 inline float length2(const Vec3& v) { return glm::dot(v, v); }
 inline float max_component(const Vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
 inline float max_abs(const Vec3& v) { return std::max(std::abs(v.x), std::max(std::abs(v.y), std::abs(v.z))); }
+/// v[axis], read by address: GLM's operator asks which axis it is.
+inline float component(const Vec3& v, int axis) { return (&v.x)[axis]; }
 inline bool is_black(const Rgb& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 inline bool is_finite(const Vec3& v) { return std::isfinite(v.x + v.y + v.z); }
 inline float safe_sqrt(float x) { return std::sqrt(std::max(x, 0.0f)); }

@@ -17,6 +17,8 @@ namespace ajar {
 using CellKey = uint64_t;
 
 inline constexpr int most_cell_levels = 9;
+/// Ranges of directions of a normal, one of which is empty.
+inline constexpr int normal_bins = 27;
 /// Of a cube of level 0.
 inline constexpr int most_compartments = 16;
 /// Cubes of level 0 along an axis, where walls are looked for.
@@ -43,6 +45,13 @@ struct Probe {
   uint32_t axis = 0;  ///< along which it divides the probes beside it (make_probe_table)
 };
 
+/// What find reads while the table does not change (src/field/shortcuts.h).
+struct Shortcuts {
+  std::vector<uint32_t> rows;  ///< per top cube, and for all other cubes: of its first compartment
+  std::vector<std::array<uint32_t, normal_bins>> tops;  ///< per row and normal: its leaves
+  std::vector<uint32_t> leaves;                         ///< cells; none: nothing is prepared
+};
+
 /// Cells of all levels in one open hash table, and the way from one to its parts.
 struct CellTable {
   /// One of the eight cubes of a divided cell; none where it is not known.
@@ -64,6 +73,7 @@ struct CellTable {
   std::vector<Portal> portals;        ///< of the walls that cut the most
   std::vector<Probe> probes;  ///< not empty: cells are theirs, not cubes; a kd-tree: the middle of a range divides it
   size_t used = 0;
+  Shortcuts shortcuts;  ///< as shorten left them; none where the table has changed since
 
   float edge(int level) const { return std::ldexp(width, -level); }
 };
@@ -92,6 +102,8 @@ void insert(CellTable& table, CellKey key, uint32_t cell);
 uint32_t cell_of(const CellTable& table, CellKey key);
 /// From now on find looks for smaller cells, of the next level, in this one, whose key is there.
 void set_divided(CellTable& table, CellKey key);
+/// Prepares shortcuts for find, until a cell is inserted or divided, or walls are cut.
+void shorten(CellTable& table);
 /// 0: largest; a cube of the next level is half as wide.
 int level_of(CellKey key);
 /// The cube of a cell; of a probe, its point.

@@ -15,6 +15,9 @@ std::vector<Portal> find_portals(const std::vector<CellCut>& cuts, const Vec3& c
 /// Gives both fields strata for the portals of their table, that know nothing. False where they have them already.
 bool add_portals(Fields& fields);
 
+// What the axes beside a given one are.
+inline constexpr int first_beside[] = {1, 2, 0}, second_beside[] = {2, 0, 1};
+
 /// Where a ray passes through a portal's plane.
 struct Crossing {
   uint32_t cell = none;  ///< among Field::portals
@@ -23,7 +26,19 @@ struct Crossing {
   float density = 0;     ///< area of the square per solid angle at the ray's origin
 };
 /// w: unit. False where the ray misses the disk.
-bool cross(const Portal& portal, uint32_t number, const Vec3& p, const Vec3& w, Crossing& out);
+inline bool cross(const Portal& portal, uint32_t number, const Vec3& p, const Vec3& w, Crossing& out) {
+  const int a = portal.axis, b = first_beside[a], c = second_beside[a];
+  const float per_axis = 1 / component(w, a), scale = 1 / portal.radius;
+  out.distance = (component(portal.center, a) - component(p, a)) * per_axis;
+  const float x = (component(p, b) - component(portal.center, b) + out.distance * component(w, b)) * scale,
+              y = (component(p, c) - component(portal.center, c) + out.distance * component(w, c)) * scale;
+  if (!((out.distance > 0) & (out.distance < infinity) & (x * x + y * y < 1))) return false;
+  out.cell = 2 * number + (per_axis > 0);
+  float per_disk;
+  out.square = to_square({x, y, 1}, per_disk);
+  out.density = per_disk * sqr(out.distance * scale) * std::abs(per_axis);  // (G12)
+  return true;
+}
 
 /// Paths through an opening as lines, to find where they are closest together: sums of (G13), in fixed point.
 inline constexpr size_t line_sums = 11;
@@ -37,7 +52,16 @@ struct Opening {
   uint32_t portal = none, cell = none;
   float share = 0;  ///< h of (G11): of the field's directions, those that are drawn through it
 };
-Opening opening(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p);
+inline Opening opening(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p) {
+  const FieldCell& c = field.cells[cell];
+  if (c.portal == FieldCell::no_portal) return {};
+  const Portal& portal = fields.table.portals[c.portal];
+  const float across = component(portal.center, portal.axis) - component(p, portal.axis);
+  // In the plane directions do not tell places.
+  if (!(std::abs(across) > 1e-3f * portal.radius)) return {};
+  const uint32_t seen = 2 * uint32_t(c.portal) + (across > 0);
+  return {c.portal, seen, c.through * field.portals[seen].mix};
+}
 /// u in [0,1)^2.
 Vec3 sample(const Fields& fields, const Field& field, const Opening& opening, const Vec3& p, const Vec2& u);
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstdint>
 #include <vector>
 
 #include "ajar/core/angle.h"
@@ -15,15 +16,16 @@ namespace ajar {
 /// Sixteen strata, 4 x 4, of a square of directions; each may be divided again by a node of its own. Shares are
 /// cumulative sums in steps of 2^-16.
 struct StrataNode {
-  uint16_t before[16] = {};  ///< share of the strata before this one; before[0] = 0
-  uint16_t divided = 0;      ///< bit i: stratum i has a node
-  uint32_t children = 0;     ///< index of the first of these nodes; they follow each other
+  uint16_t before[17] =
+      {};  ///< share of the strata before this one; before[0] = 0, and before[16]: all of them wrap around
+  uint16_t divided = 0;   ///< bit i: stratum i has a node
+  uint32_t children = 0;  ///< index of the first of these nodes; they follow each other
 
   bool operator==(const StrataNode&) const = default;
   uint32_t child(int i) const { return children + uint32_t(std::popcount(unsigned(divided & ((1u << i) - 1)))); }
   bool is_divided(int i) const { return (divided >> i) & 1; }
-  /// Share of stratum i, in steps of 2^-16.
-  uint32_t steps(int i) const { return (i == 15 ? 65536u : before[i + 1]) - before[i]; }
+  /// Share of stratum i, in steps of 2^-16: less than all.
+  uint32_t steps(int i) const { return uint16_t(before[i + 1] - before[i]); }
 };
 
 /// A number that is not negative in 16 bits, eight of them for the exponent: rounding errs by 2^-9 of it at most. What
@@ -47,7 +49,8 @@ inline Vec2 to_square(const Vec3& local, float& density) {
   const float r2 = local.x * local.x + local.y * local.y, m = std::max(std::abs(local.x), std::abs(local.y));
   const float stretch = r2 > 0 ? std::sqrt(r2) / m : 1;
   density = 0.25f * local.z * stretch * stretch;
-  return glm::clamp(Vec2(local) * (0.5f * stretch) + 0.5f, Vec2(0), Vec2(one_minus_epsilon));
+  const auto place = [&](float x) { return std::min(std::max(x * (0.5f * stretch) + 0.5f, 0.0f), one_minus_epsilon); };
+  return {place(local.x), place(local.y)};
 }
 inline Vec2 to_square(const Vec3& local) {
   float density;
@@ -88,32 +91,67 @@ float patch_density(const std::vector<StrataNode>& nodes, uint32_t root, const V
 /// Draws a direction, uniform within its patch; u in [0,1)^2. Leaves its density per solid angle.
 Vec3 sample_patch(const std::vector<StrataNode>& nodes, uint32_t root, const Vec2& u, float& density);
 
-/// Density over the unit square of the tree under node root.
-float density(const std::vector<StrataNode>& nodes, uint32_t root, const Vec2& at);
-/// A point of the square of one of several trees.
-struct TreePlace {
-  uint32_t root = 0;
-  Vec2 at{0};
-};
-/// Densities at two of them, in less time than one after the other.
-Vec2 densities(const std::vector<StrataNode>& nodes, const TreePlace& a, const TreePlace& b);
 /// Draws a point of the unit square; u in [0,1)^2. Leaves its density.
 Vec2 sample(const std::vector<StrataNode>& nodes, uint32_t root, const Vec2& u, float& density);
 
 /// Strata that a point of the unit square is in, from the root down.
 class Descent {
  public:
-  explicit Descent(const Vec2& at) : x_(uint32_t(at.x * finest)), y_(uint32_t(at.y * finest)) {}
-  /// Stratum at the next level; most_levels times at most.
+  explicit Descent(const Vec2& at) : at_(uint32_t(at.y * finest) << 16 | uint32_t(at.x * finest)) {}
+  /// Stratum at the next level; most_levels times at most, and one more where they are odd.
   int next() {
     shift_ -= 2;
-    return int((y_ >> shift_ & 3) << 2 | (x_ >> shift_ & 3));
+    return int((at_ >> (shift_ + 14) & 12) | (at_ >> shift_ & 3));
   }
 
  private:
-  static constexpr float finest = 1 << 2 * most_levels;  // strata of the last level along an edge
-  uint32_t x_, y_;
-  int shift_ = 2 * most_levels;
+  static constexpr int levels = most_levels + most_levels % 2;
+  static constexpr float finest = 1 << 2 * levels;  // strata of the last of these levels along an edge
+  uint32_t at_;                                     // y << 16 | x
+  int shift_ = 2 * levels;
 };
+
+/// What is below a leaf: strata that are even, and change nothing.
+inline constexpr StrataNode leaf_strata{{0, 1 << 12, 2 << 12, 3 << 12, 4 << 12, 5 << 12, 6 << 12, 7 << 12, 8 << 12,
+                                         9 << 12, 10 << 12, 11 << 12, 12 << 12, 13 << 12, 14 << 12, 15 << 12, 0},
+                                        0,
+                                        0};
+
+/// A point's way down a tree, with the density over the square that the strata so far have. Two levels at a time, where
+/// most leaves are, without branches, which would be guessed wrong. Past the leaf come strata that change nothing.
+class Way {
+ public:
+  Way(const StrataNode* nodes, uint32_t root, const Vec2& at) : nodes_(nodes), node_(nodes + root), down_(at) {}
+  void go_on() {
+    const float upper = enter(), lower = enter();
+    density_ = density_ * upper * lower * 0x1p-24f;
+  }
+  bool goes_on() const { return node_ != &leaf_strata; }
+  float density() const { return density_; }
+
+ private:
+  // Share of the stratum at the next level, in steps of 2^-12 of an even one.
+  float enter() {
+    const StrataNode& at = *node_;
+    const int i = down_.next();
+    const uint32_t steps = at.steps(i);
+    const uintptr_t leaf = uintptr_t(&leaf_strata), below = uintptr_t(nodes_) + at.child(i) * sizeof(StrataNode);
+    node_ = reinterpret_cast<const StrataNode*>(leaf ^ ((leaf ^ below) & -uintptr_t(at.is_divided(i))));
+    return float(int(steps));
+  }
+
+  const StrataNode *nodes_, *node_;
+  Descent down_;
+  float density_ = 1;
+};
+
+/// Density over the unit square of the tree under node root.
+inline float density(const std::vector<StrataNode>& nodes, uint32_t root, const Vec2& at) {
+  Way way(nodes.data(), root, at);
+  do {
+    way.go_on();
+  } while (way.goes_on());
+  return way.density();
+}
 
 }  // namespace ajar
