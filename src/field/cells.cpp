@@ -35,8 +35,8 @@ Vec3 scaled(const CellTable& table, const Vec3& p) {
 
 // Whether keys reach as far.
 bool in_range(const Vec3& scaled) {
-  const auto is_in = [](float x) { return (x >= 0) & (x < float(most_coordinate)); };
-  return is_in(scaled.x) & is_in(scaled.y) & is_in(scaled.z);
+  const auto is_in = [](float x) { return x >= 0 && x < float(most_coordinate); };
+  return is_in(scaled.x) && is_in(scaled.y) && is_in(scaled.z);
 }
 
 glm::uvec3 coordinates(const Vec3& scaled) {
