@@ -134,9 +134,8 @@ void run(const std::string& path, const Settings& set) {
   const double rays = ns([&](const Visit& v) { return trace(accel, v); });
   const double among = ns([&](const Visit& v) { return all(f, v) + trace(accel, v); });
   fmt::print(
-      "  ns a vertex: look-up {:.1f}  reverse density {:.1f}  sample {:.1f}  density {:.1f}; look-up and both "
-      "densities "
-      "{:.1f}; all {:.1f}; a ray {:.0f}; all between rays {:.1f}  (sum {:.3g})\n",
+      "  ns a vertex: look-up {:.1f}  reverse density {:.1f}  sample {:.1f}  density {:.1f}; "
+      "look-up and both densities {:.1f}; all {:.1f}; a ray {:.0f}; all between rays {:.1f}  (sum {:.3g})\n",
       look_up, reverse, draw, density, look_up + reverse + density, together, rays, among - rays, sum);
 }
 
