@@ -187,9 +187,8 @@ void set_divided(CellTable& table, CellKey key) {
   if (table.parts.empty()) table.parts.resize(1);
   at.parts = uint32_t(table.parts.size());
   std::array<CellTable::Part, 8>& parts = table.parts.emplace_back();
-  const glm::uvec3 first = coordinates_of(key) << 1u;
   for (uint32_t i = 0; i < 8; ++i) {
-    const glm::uvec3 c = first + glm::uvec3(i & 1, i >> 1 & 1, i >> 2);
+    const glm::uvec3 c = part_of(coordinates_of(key), i);
     const CellTable::Slot* slot = find_slot(table, make_key(level_of(key) + 1, kind_of(key), c));
     if (slot) parts[i] = slot->at;
   }

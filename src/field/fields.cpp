@@ -84,7 +84,6 @@ float pdf(const Fields& fields, const Field& field, uint32_t cell, const Vec3& p
   const Vec3 local = fields.cells[cell].frame.to_local(w);
   if (!(local.z > 0)) return 0;
   const uint32_t root = field.cells[cell].root;
-  __builtin_prefetch(&field.nodes[root]);  // which stratum of it is known much later
   if (fields.structure != Structure::adaptive) return patch_density(field.nodes, root, local);
   float per_center, stretch;
   const Vec2 at = to_square(shifted(shift(fields, field, cell, p), local, stretch), per_center);

@@ -28,7 +28,11 @@ inline glm::uvec3 coordinates_of(CellKey key) {
 }
 inline CellKind kind_of(CellKey key) { return {uint32_t(key >> at_normal) & 31, uint32_t(key >> at_compartment) & 15}; }
 
+// Which of the eight parts of a cube its coordinates, at their level, make it; and where a part is.
 inline uint32_t octant_of(const glm::uvec3& c) { return (c.x & 1) | (c.y & 1) << 1 | (c.z & 1) << 2; }
+inline glm::uvec3 part_of(const glm::uvec3& c, uint32_t octant) {
+  return 2u * c + glm::uvec3(octant & 1, octant >> 1 & 1, octant >> 2);
+}
 
 inline constexpr size_t all_top_cubes = size_t(top_cubes) * top_cubes * top_cubes;
 // Number of a cube of level 0 among those that walls are looked for in; all_top_cubes elsewhere.

@@ -323,7 +323,6 @@ Fields learn(const Fields& fields, const Training& training, const Sightings& si
   next.structure = fields.structure, next.rule = fields.rule;
   next.generation = fields.generation + 1;
   next.table = fields.table;
-  next.table.shortcuts = {};
   next.cells = fields.cells;
   next.lines = fields.lines;
   const std::vector<bool> moved = move_portals(training, next);

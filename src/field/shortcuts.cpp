@@ -31,7 +31,7 @@ struct Leaves {
   uint32_t leaf_of(const CellTable::Part& part, int level) const {
     if (part.parts == 0) return part.cell;
     if (is_any_known(table.parts[part.parts])) return none;
-    return uint32_t(level + 1) << cell_bits | part.cell;
+    return make_leaf(part.cell, level + 1);
   }
   void fill(uint32_t leaf, int level, const glm::uvec3& c) const {
     const uint32_t across = 1u << (depth - level);
@@ -48,11 +48,10 @@ struct Leaves {
       return fill(leaf_of(part, level), level, c);
     for (uint32_t i = 0; i < 8; ++i) {
       const CellTable::Part& p = table.parts[part.parts][i];
-      const glm::uvec3 at = 2u * c + glm::uvec3(i & 1, i >> 1 & 1, i >> 2);
       if (p.cell != none)
-        enter(p, level + 1, at);
+        enter(p, level + 1, part_of(c, i));
       else
-        fill(uint32_t(level + 1) << cell_bits | part.cell, level + 1, at);
+        fill(make_leaf(part.cell, level + 1), level + 1, part_of(c, i));
     }
   }
 };

@@ -14,6 +14,7 @@ inline constexpr uint32_t first_mask = (1u << first_bits) - 1;
 // table is to be asked.
 inline constexpr int cell_bits = 28;
 inline constexpr uint32_t cell_mask = (1u << cell_bits) - 1;
+inline uint32_t make_leaf(uint32_t cell, int missing) { return uint32_t(missing) << cell_bits | cell; }
 
 // Place of a point among the leaves so many levels below its cube of level 0.
 inline uint32_t place_below(const glm::uvec3& finest, uint32_t depth) {

@@ -41,6 +41,7 @@ struct Field {
   double unit = 1;  ///< a typical value: of Q radiance, of W pixels' importance per area and solid angle [1/(m^2 sr)]
 };
 
+/// In a cache line of its own.
 struct alignas(64) Cell {
   CellKey key = 0;
   Frame frame;                  ///< its strata are about frame.n

@@ -16,10 +16,9 @@ namespace ajar {
 /// Sixteen strata, 4 x 4, of a square of directions; each may be divided again by a node of its own. Shares are
 /// cumulative sums in steps of 2^-16.
 struct StrataNode {
-  uint16_t before[17] =
-      {};  ///< share of the strata before this one; before[0] = 0, and before[16]: all of them wrap around
-  uint16_t divided = 0;   ///< bit i: stratum i has a node
-  uint32_t children = 0;  ///< index of the first of these nodes; they follow each other
+  uint16_t before[17] = {};  ///< share of the strata before this one; before[0] = before[16] = 0: all wrap around
+  uint16_t divided = 0;      ///< bit i: stratum i has a node
+  uint32_t children = 0;     ///< index of the first of these nodes; they follow each other
 
   bool operator==(const StrataNode&) const = default;
   uint32_t child(int i) const { return children + uint32_t(std::popcount(unsigned(divided & ((1u << i) - 1)))); }
@@ -113,9 +112,7 @@ class Descent {
 
 /// What is below a leaf: strata that are even, and change nothing.
 inline constexpr StrataNode leaf_strata{{0, 1 << 12, 2 << 12, 3 << 12, 4 << 12, 5 << 12, 6 << 12, 7 << 12, 8 << 12,
-                                         9 << 12, 10 << 12, 11 << 12, 12 << 12, 13 << 12, 14 << 12, 15 << 12, 0},
-                                        0,
-                                        0};
+                                         9 << 12, 10 << 12, 11 << 12, 12 << 12, 13 << 12, 14 << 12, 15 << 12, 0}};
 
 /// A point's way down a tree, with the density over the square that the strata so far have. Two levels at a time, where
 /// most leaves are, without branches, which would be guessed wrong. Past the leaf come strata that change nothing.
