@@ -259,13 +259,16 @@ size_t Accel::bytes() const { return size_t(std::max<int64_t>(data_->bytes.load(
 
 namespace {
 
-RTCRay make_ray(const Vec3& o, const Vec3& d, float t_min, float t_max, float stretch) {
-  RTCRay ray;
-  ray.org_x = o.x, ray.org_y = o.y, ray.org_z = o.z;
-  ray.dir_x = stretch * d.x, ray.dir_y = stretch * d.y, ray.dir_z = stretch * d.z;
-  ray.tnear = t_min / stretch, ray.tfar = t_max / stretch, ray.time = 0;
+typedef float FourFloats __attribute__((vector_size(16), may_alias));
+
+// By fours, as the ray tracer reads them: what is written in smaller parts it would wait for, until all are in the
+// cache.
+void set_ray(const Vec3& o, const Vec3& d, float t_min, float t_max, float stretch, RTCRay& ray) {
+  const float shrink = 1 / stretch;
+  reinterpret_cast<FourFloats&>(ray.org_x) = FourFloats{o.x, o.y, o.z, t_min * shrink};
+  reinterpret_cast<FourFloats&>(ray.dir_x) = FourFloats{stretch * d.x, stretch * d.y, stretch * d.z, 0};
+  ray.tfar = t_max * shrink;
   ray.mask = ~0u, ray.id = 0, ray.flags = 0;
-  return ray;
 }
 
 }  // namespace
@@ -274,7 +277,7 @@ bool Accel::intersect(const Vec3& o, const Vec3& d, float t_min, float t_max, Hi
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   RTCRayHit r;
-  r.ray = make_ray(o, d, t_min, t_max, stretch_);
+  set_ray(o, d, t_min, t_max, stretch_, r.ray);
   r.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(static_cast<RTCScene>(top_), &context, &r);
@@ -293,7 +296,8 @@ bool Accel::occluded(const Vec3& o, const Vec3& d, float t_max) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   if (!(t_max > 0)) return false;
-  RTCRay ray = make_ray(o, d, 0, t_max, stretch_);
+  RTCRay ray;
+  set_ray(o, d, 0, t_max, stretch_, ray);
   rtcOccluded1(static_cast<RTCScene>(top_), &context, &ray);
   return ray.tfar < 0;
 }

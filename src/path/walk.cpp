@@ -128,7 +128,7 @@ bool step(const Scene& scene, const Accel& accel, const WalkOptions& options, Su
   walk.escaped = !(first && by_camera ? first_seen(scene, accel, ray, hit)
                                       : accel.intersect(ray.o, ray.d, ray.t_min, ray.t_max, hit));
   if (walk.escaped) return false;
-  surface = make_surface(scene, hit, walk.o, walk.d);
+  set_surface(scene, hit, walk.o, walk.d, surface);
   Vertex& v = subpath.add();
   const Vertex& before = subpath[subpath.n - 2];
   set_vertex(walk, surface, before, v);

@@ -126,23 +126,23 @@ void set_mesh_surface(const Scene& scene, const Shape& shape, const Mesh& mesh, 
   s.frame = shape.tangents ? make_frame(n, s.dpdu) : make_frame(n);
 }
 
-// A triangle of a mesh that finish has not seen, as it would have packed it.
-Mesh packed_alone(const Mesh& mesh, uint32_t prim) {
+// Of a mesh that finish has not seen: the triangle as it would have packed it. Apart, so that all others do not make
+// room for it.
+[[gnu::noinline]] void set_unpacked_surface(const Scene& scene, const Shape& shape, const Mesh& mesh, uint32_t prim,
+                                            Surface& s) {
   Mesh one;
   PackedTriangle face = pack_triangle(mesh, prim);
   for (int i = 0; i < 3; ++i) one.packed.push_back(vertex(mesh, face.v[i]));
   face.v = {0, 1, 2};
-  one.faces = {face};
   one.smooth = !mesh.normals.empty(), one.mapped = !mesh.uvs.empty();
-  return one;
+  set_mesh_surface(scene, shape, one, face, s);
 }
 
 void set_mesh_surface(const Scene& scene, Surface& s) {
   const Shape& shape = scene.shapes[s.shape];
   const Mesh& mesh = scene.meshes[shape.mesh];
   if (!mesh.faces.empty()) return set_mesh_surface(scene, shape, mesh, mesh.faces[s.prim], s);
-  const Mesh one = packed_alone(mesh, s.prim);
-  set_mesh_surface(scene, shape, one, one.faces[0], s);
+  set_unpacked_surface(scene, shape, mesh, s.prim, s);
 }
 
 // Nearest point of the unit object; its normal; derivatives of position to u and v (of which accel's hits are made).
@@ -247,15 +247,14 @@ float inverse(double area) { return area > 0 ? float(std::min(1 / area, 1e38)) :
 
 }  // namespace
 
-Surface make_surface(const Scene& scene, const Hit& hit, const Vec3& ray_o, const Vec3& ray_d) {
-  Surface s;
+void set_surface(const Scene& scene, const Hit& hit, const Vec3& ray_o, const Vec3& ray_d, Surface& s) {
   s.shape = hit.shape, s.prim = hit.prim, s.instance = hit.instance;
   s.bary = hit.bary;
+  s.dpdu = s.dpdv = Vec3(0);
   if (scene.shapes[hit.shape].kind == ShapeKind::mesh)
     set_mesh_surface(scene, s);
   else
     set_quadric_surface(scene, hit, ray_o, ray_d, s);
-  return s;
 }
 
 Vec2 texture_point(const Scene& scene, uint32_t shape, uint32_t prim, const Vec2& bary) {

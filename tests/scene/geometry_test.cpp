@@ -127,6 +127,24 @@ TEST(Geometry, ShadingNormalsLieOnTheSideOfNg) {
   EXPECT_GT(glm::dot(s.ng, n), 0);  // winding decides
 }
 
+// A walk sets one Surface after another in the same place.
+TEST(Geometry, SurfacesAreSetAnew) {
+  Scene scene;
+  Mesh bare = bent_triangle();
+  bare.uvs.clear();
+  Hit bent, plain;
+  bent.shape = kit::add_mesh(scene, bent_triangle()), plain.shape = kit::add_mesh(scene, bare);
+  bent.bary = {0.3f, 0.2f}, plain.bary = {0.25f, 0.5f};
+  Surface s;
+  set_surface(scene, bent, Vec3(0), Vec3(0, 0, 1), s);
+  EXPECT_NE(s.dpdu, Vec3(0));
+  set_surface(scene, plain, Vec3(0), Vec3(0, 0, 1), s);
+  EXPECT_EQ(s.dpdu, Vec3(0));
+  EXPECT_EQ(s.dpdv, Vec3(0));
+  EXPECT_EQ(s.uv, plain.bary);
+  EXPECT_EQ(s.shape, plain.shape);
+}
+
 TEST(Geometry, UselessTextureCoordinatesGiveZeroTangents) {
   for (const bool none_at_all : {true, false}) {
     Scene scene;

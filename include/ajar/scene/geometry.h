@@ -9,8 +9,13 @@ namespace ajar {
 
 /// Differential geometry of a hit. The position comes from the surface (barycentrics, quadric), not from t. Meshes: ng
 /// is on the side from which the triangle's vertices run counter-clockwise, in instances as in the group (mirrored or
-/// not).
-Surface make_surface(const Scene& scene, const Hit& hit, const Vec3& ray_o, const Vec3& ray_d);
+/// not). set_surface writes over all of out, where a walk keeps it.
+void set_surface(const Scene& scene, const Hit& hit, const Vec3& ray_o, const Vec3& ray_d, Surface& out);
+inline Surface make_surface(const Scene& scene, const Hit& hit, const Vec3& ray_o, const Vec3& ray_d) {
+  Surface surface;
+  set_surface(scene, hit, ray_o, ray_d, surface);
+  return surface;
+}
 /// (u, v) of a hit, as textures read them.
 Vec2 texture_point(const Scene& scene, uint32_t shape, uint32_t prim, const Vec2& bary);
 /// A point uniform by area on a shape that emits; u in [0,1)^2. pdf is the exact density per area, area_pdf of the same
