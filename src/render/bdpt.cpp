@@ -81,7 +81,7 @@ void join_next_event(Work& work, float worth) {
   if (!job.next_event || job.scene->lights.empty()) return;
   v.next_events = next_events(work, v, worth);
   LightNumbers first;
-  const int count = draw_light(*job.scene, v.guide, work.sample.sampler, first) ? v.next_events : 0;
+  const int count = draw_light(*job.scene, v.guide, work.scratch.numbers, first) ? v.next_events : 0;
   LightChances chances;
   Received received;
   for (int i = 0; i < count; ++i) {
@@ -144,7 +144,7 @@ void join_stored(Work& work, float worth) {
   const Subpath& camera = work.scratch.camera;
   const Vertex& v = camera[camera.n - 1];
   std::vector<StoreChoice>& choices = work.scratch.choices;
-  choose(store, joiner_of(job, camera, worth), work.sample.sampler, work.scratch.expected, choices);
+  choose(store, joiner_of(job, camera, worth), work.scratch.numbers, work.scratch.expected, choices);
   ask_for(store, choices);
   for (const StoreChoice& choice : choices) {
     const LightStore::Entry& at = store.entries[choice.entry];
@@ -187,9 +187,10 @@ void note_beyond(const Work& work, const First& first, const Walk& walk) {
 }
 
 // What teaches goes on, and takes its numbers.
-bool survives_roulette(const Job& job, Sample& sample, Subpath& camera, Walk& walk) {
-  if (!sample.teaches) return is_worth_it(job.walk, sample.sampler, camera, walk);
-  sample.sampler.skip();
+bool survives_roulette(Work& work, Walk& walk) {
+  Sampler& numbers = work.scratch.numbers;
+  if (!work.sample.teaches) return is_worth_it(work.job.walk, numbers, work.scratch.camera, walk);
+  numbers.skip();
   return true;
 }
 
@@ -297,10 +298,10 @@ void trace_bdpt(const Job& job, Sample& sample, Scratch& scratch) {
       break;
     }
     join_surface(work, surface);
-    if (scratch.pool && !survives_roulette(job, sample, camera, walk)) break;
+    if (scratch.pool && !survives_roulette(work, walk)) break;
     join_all(work);
     note_first(work, first);
-  } while (camera.n <= job.walk.max_edges && scatter(job.walk, sample.sampler, camera, walk));
+  } while (camera.n <= job.walk.max_edges && scatter(job.walk, scratch.numbers, camera, walk));
   charge(scratch, &Ledger::camera_ticks);
   note_beyond(work, first, walk);
   if (!sample.teaches || !job.guided) return;

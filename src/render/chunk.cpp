@@ -27,27 +27,33 @@ uint64_t index_of(const Film& film, int x, int y) { return uint64_t(y) * uint64_
 
 // The numbers of a pixel's k-th sample in a pass: those that come next. Even passes and odd ones have sequences of
 // their own.
-Sampler pixel_numbers(const Job& job, uint64_t pixel, uint32_t pass, uint32_t k) {
+Stream pixel_numbers(const Job& job, uint64_t pixel, uint32_t pass, uint32_t k) {
   uint32_t point = pass;
   if (job.adaptive) point = job.adaptive->first + 2 * (job.adaptive->spread[pixel].counts[pass % 2] + k) + pass % 2;
-  return make_sampler(job.sampler, job.seed, Side::camera, pixel, point);
+  return make_stream(job.sampler, job.seed, Side::camera, pixel, point);
 }
 
+bool has_lens(const Job& job) { return job.scene->camera.kind == CameraKind::thinlens; }
+
 // The k-th sample of a pixel in the pass; the first one may teach.
-Sample make_sample(const Job& job, const Film& film, int x, int y, uint32_t k = 0) {
-  Sample s;
+void begin(const Job& job, const Film& film, int x, int y, uint32_t k, Sample& s) {
   s.x = x, s.y = y;
   const uint64_t pixel = index_of(film, x, y);
   s.path = pixel + k * film.pixels();
   s.pass = film.dropped + film.passes;
   s.number = k, s.count = count_of(job.adaptive, pixel);
   s.teaches = k == 0 && job.learning && is_recorded(*job.learning, pixel, s.pass, recorded_one_in(*job.learning, film));
-  s.sampler = pixel_numbers(job, pixel, s.pass, k);
-  const Vec2 centre(float(film.x0 + x) + 0.5f, float(film.y0 + y) + 0.5f);
-  s.raster = centre + ajar::sample(film.filter, s.sampler.next2(), s.weight);
-  if (job.scene->camera.kind == CameraKind::thinlens) s.lens = s.sampler.next2();
+  s.stream = pixel_numbers(job, pixel, s.pass, k);
+  if (has_lens(job)) s.lens = Sampler(s.stream, 1).next2();
+}
+
+// Where in its pixel the sample looks, by the first of its numbers; the next ones are the subpath's.
+void aim(const Job& job, const Film& film, Sample& s, Sampler& numbers) {
+  numbers.start(s.stream);
+  const Vec2 centre(float(film.x0 + s.x) + 0.5f, float(film.y0 + s.y) + 0.5f);
+  s.raster = centre + ajar::sample(film.filter, numbers.next2(), s.weight);
   s.weight *= float(traced_one_in(job, film)) / float(s.count);
-  return s;
+  if (has_lens(job)) numbers.skip();
 }
 
 bool is_traced(const Job& job, const Film& film, int x, int y) {
@@ -60,7 +66,7 @@ void add_further(const Job& job, const Film& film, std::vector<Halves::Part>& sa
   const size_t pixels = samples.size();
   for (size_t i = 0; i < pixels; ++i)
     for (uint32_t k = 1; k < samples[i].sample.count; ++k)
-      samples.push_back({make_sample(job, film, samples[i].sample.x, samples[i].sample.y, k)});
+      begin(job, film, samples[i].sample.x, samples[i].sample.y, k, samples.emplace_back().sample);
 }
 
 // Not those that are recorded more than others.
@@ -82,8 +88,9 @@ void note(PixelSpread& spread, uint32_t pass, float brought) {
 }
 
 // What the sample brings its pixel, filtered.
-Rgb trace_pixel(const Job& job, Sample& sample, bool splat, Scratch& scratch) {
+Rgb trace_pixel(const Job& job, const Film& film, Sample& sample, bool splat, Scratch& scratch) {
   const size_t splats = scratch.splats->size();
+  aim(job, film, sample, scratch.numbers);
   scratch.clock = is_timed(sample) ? clock_ticks() : 0;
   job.trace(job, sample, scratch);
   if (!accept(sample.value, sample.path, scratch)) sample.value = Rgb(0);
@@ -114,7 +121,7 @@ void begin_samples(const Job& job, Film& film, uint32_t chunk, Scratch& scratch)
     for (int column = bounds.x0; column < bounds.x1; ++column) {
       const int x = (column + shift.x) % film.width, y = (row + shift.y) % film.height;
       film.camera[index_of(film, x, y)] = Rgb(0);
-      if (is_traced(job, film, x, y)) halves.samples.push_back({make_sample(job, film, x, y)});
+      if (is_traced(job, film, x, y)) begin(job, film, x, y, 0, halves.samples.emplace_back().sample);
     }
   halves.pixels = halves.samples.size();
   add_further(job, film, halves.samples);
@@ -142,7 +149,7 @@ void trace_camera_halves(const Job& job, Film& film, OfPool of, Scratch& scratch
   if (job.vpls && !job.guided) start(job.vpls->store, scratch.visibility);
   for (auto& [sample, splat] : scratch.halves->samples)
     if (of.pools == 1 || pool_of(job, sample, of.pools) == of.pool) {
-      const Rgb value = trace_pixel(job, sample, splat, scratch);
+      const Rgb value = trace_pixel(job, film, sample, splat, scratch);
       const uint64_t pixel = index_of(film, sample.x, sample.y);
       film.camera[pixel] += value;
       if (job.adaptive) note(job.adaptive->spread[pixel], sample.pass, luminance(value) * float(sample.count));
@@ -150,8 +157,9 @@ void trace_camera_halves(const Job& job, Film& film, OfPool of, Scratch& scratch
 }
 
 Rgb trace_alone(const Job& job, const Film& film, uint32_t pixel, Scratch& scratch) {
-  Sample sample = make_sample(job, film, int(pixel) % film.width, int(pixel) / film.width);
-  return trace_pixel(job, sample, false, scratch);
+  Sample sample;
+  begin(job, film, int(pixel) % film.width, int(pixel) / film.width, 0, sample);
+  return trace_pixel(job, film, sample, false, scratch);
 }
 
 }  // namespace ajar

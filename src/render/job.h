@@ -58,10 +58,11 @@ struct Sample {
   uint64_t path = 0;  ///< index of the pixel; of its further samples so many times the number of pixels more
   uint32_t number = 0, count = 1;  ///< among how many of the pixel in the pass
   uint32_t pass = 0;
-  Vec2 raster{0}, lens{0};
-  float weight = 1;  ///< what the filter makes of the camera path's radiance, over their number, times that for how
-                     ///< many samples of the pass it stands, where not all are traced
-  Sampler sampler;
+  Vec2 lens{0};
+  Stream stream;         ///< of its numbers: the first pair aims it, the second is lens where there is one
+  Vec2 raster{0};        ///< set, as weight, when its camera half begins
+  float weight = 1;      ///< what the filter makes of the camera path's radiance, over their number, times that for how
+                         ///< many samples of the pass it stands, where not all are traced
   bool teaches = false;  ///< what its subpaths see is recorded
   uint32_t gathers = 0;  ///< rays of a final gather so far
   Rgb value{0};          ///< radiance found by the camera path, unfiltered
@@ -90,6 +91,7 @@ struct NearPhoton {
 /// Storage of one thread at work on one chunk; kept from chunk to chunk. Threads share no cache line.
 struct alignas(64) Scratch {
   Subpath camera, light;
+  Sampler numbers;       ///< of the camera half at work
   LightStore traced;     ///< light subpaths of the chunk at work
   Expectation expected;  ///< of choices
   std::vector<StoreChoice> choices;

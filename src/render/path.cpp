@@ -112,8 +112,8 @@ void trace_path(const Job& job, Sample& sample, Scratch& scratch) {
     make_guide(scene, job.walk.fields, Side::camera, at, -f.d, guide);
     charge(scratch, &Ledger::camera_ticks);
     if (job.next_event && connectable(guide) && !scene.lights.empty())
-      add(sample, scratch, 1, t, f.beta * direct(job, guide, at, sample.sampler, t, sample.teaches, scratch));
-    if (!scatter(job, guide, at, edges, sample.sampler, f)) return;
+      add(sample, scratch, 1, t, f.beta * direct(job, guide, at, scratch.numbers, t, sample.teaches, scratch));
+    if (!scatter(job, guide, at, edges, scratch.numbers, f)) return;
   }
 }
 

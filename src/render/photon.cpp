@@ -21,7 +21,7 @@ void gather(const Job& job, Sample& sample, Scratch& scratch, const Walk& walk, 
     Walk ray = walk;
     camera.n = t;
     ++sample.gathers;
-    if (!scatter(job.walk, sample.sampler, camera, ray)) continue;
+    if (!scatter(job.walk, scratch.numbers, camera, ray)) continue;
     ray.beta /= float(rays);
     follow(job, sample, scratch, ray, !camera[t - 1].delta, 1);
   }
@@ -54,7 +54,7 @@ void follow(const Job& job, Sample& sample, Scratch& scratch, Walk walk, bool ga
     if (!connectable(v.guide)) continue;
     join_merged(job, sample, scratch);
     if (!gathers && job.final_gather > 0) return gather(job, sample, scratch, walk, rays);
-  } while (scatter(job.walk, sample.sampler, camera, walk) && camera[camera.n - 1].delta);
+  } while (scatter(job.walk, scratch.numbers, camera, walk) && camera[camera.n - 1].delta);
 }
 
 }  // namespace

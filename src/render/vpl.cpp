@@ -62,7 +62,7 @@ bool is_walked(Work& work, const Surface& surface) {
   if (camera.n < 3 || x.delta || !connectable(x.guide) || !connectable(y.guide)) return true;
   const double share =
       can_light(*work.job.scene, surface, y.guide) ? share_of_joins(work.job, y.p, y.ng, y.guide.wo, y.own) : 0;
-  return work.sample.sampler.next1() >= share;
+  return work.scratch.numbers.next1() >= share;
 }
 
 // Whether a delta event at the last vertex would make a caustic, where other events take part of the choice.
@@ -106,7 +106,7 @@ void join_next_event(Work& work) {
   LightChances chances;
   LightNumbers u;
   if (job.scene->lights.empty()) return;
-  if (draw_light(*job.scene, v.guide, work.sample.sampler, u) &&
+  if (draw_light(*job.scene, v.guide, work.scratch.numbers, u) &&
       join_light(*job.scene, job.walk.fields, camera, camera.n, chances, u, c) && is_free(work, c, 1, camera.n))
     add(work, c, weigh_unjoined(work, c), 1, camera.n);
   charge_join(work.scratch, 1, camera.n);
@@ -125,7 +125,7 @@ void join_vpls(Work& work) {
   if (job.guided) known.views = &job.walk.fields->views, known.region = region_of(x.guide);
   expect_all(store, x, job.walk.max_edges + 1 - camera.n, known, scratch.expected);
   const int joins = camera.n > 2 ? further_joins : job.vpls->joins;
-  const uint32_t key = uint32_t(work.sample.sampler.next1() * 0x1p32f);
+  const uint32_t key = uint32_t(work.scratch.numbers.next1() * 0x1p32f);
   choose_some(store, scratch.expected, joins, key, scratch.choices);
   for (const StoreChoice& choice : scratch.choices) {
     const LightStore::Entry& at = store.entries[choice.entry];
@@ -150,7 +150,6 @@ bool is_clear(const Vertex& v) { return !connectable(v.guide); }
 // followed several times.
 void walk_on(Work& work, Walk& walk) {
   const Job& job = work.job;
-  Sample& sample = work.sample;
   Scratch& scratch = work.scratch;
   Subpath& camera = scratch.camera;
   Surface surface;
@@ -175,7 +174,7 @@ void walk_on(Work& work, Walk& walk) {
     if (!walked || camera.n > job.walk.max_edges || !connectable(camera[camera.n - 1].guide)) continue;
     join_next_event(work);
     join_vpls(work);
-  } while (camera.n <= job.walk.max_edges && scatter(job.vpls->camera, sample.sampler, camera, walk) &&
+  } while (camera.n <= job.walk.max_edges && scatter(job.vpls->camera, scratch.numbers, camera, walk) &&
            (walked || camera[camera.n - 1].delta));
   charge(scratch, &Ledger::camera_ticks);
 }
@@ -196,7 +195,7 @@ void trace_vpl(const Job& job, Sample& sample, Scratch& scratch) {
   for (int i = 0; i < clear_branches; ++i) {
     camera.n = 2;
     Walk branch = walk;
-    if (scatter(job.vpls->camera, sample.sampler, camera, branch)) walk_on(work, branch);
+    if (scatter(job.vpls->camera, scratch.numbers, camera, branch)) walk_on(work, branch);
   }
 }
 

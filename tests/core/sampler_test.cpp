@@ -102,6 +102,20 @@ TEST(Sampler, BytesAreGolden) {
   EXPECT_EQ(hash(1, 2), 0xe06dd043328bd285u);
 }
 
+// Sobol numbers come by the block: which are asked for, in which order, and what was asked before changes none.
+TEST(Sampler, NumbersDoNotDependOnWhatElseIsAskedFor) {
+  const auto alone = [](uint64_t path, uint32_t number) {
+    return make_sampler(SamplerKind::sobol, 3, Side::light, path, 5).at(number);
+  };
+  Sampler in_turn = make_sampler(SamplerKind::sobol, 3, Side::light, 8, 5);
+  for (uint32_t i = 1; i <= 5 * PairBlock::size; ++i) ASSERT_EQ(in_turn.next2(), alone(8, i)) << i;
+  Sampler leaping = make_sampler(SamplerKind::sobol, 3, Side::light, 8, 5);
+  for (const uint32_t i : {40u, 39u, 54u, 55u, 1u, 17u, 16u, 0x7fffffffu, 2u})
+    ASSERT_EQ(leaping.at(i), alone(8, i)) << i;
+  leaping.start(make_stream(SamplerKind::sobol, 3, Side::light, 9, 5), 1);
+  EXPECT_EQ(leaping.next2(), alone(9, 2)) << "numbers of the stream before";
+}
+
 struct Integrand {
   double (*f)(const Vec2& a, const Vec2& b);
   double exact;

@@ -170,7 +170,7 @@ TEST(LearnedLights, RaysOfAVertexAreUniformAndEven) {
     std::vector<Vec3> mean(size_t(n), Vec3(0));
     constexpr uint32_t vertices = 4096;
     for (uint32_t k = 0; k < vertices; ++k) {
-      const Sampler sampler{1, reverse_bits(k)};
+      Sampler sampler(Stream{1, reverse_bits(k)});
       const LightNumbers first{sampler.at(1).x, sampler.at(2)};
       std::vector<float> choices;
       for (int i = 0; i < n; ++i) {

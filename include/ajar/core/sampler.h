@@ -19,15 +19,13 @@ inline uint64_t hash(uint64_t a, uint64_t b) { return mix64(a ^ mix64(b)); }
 enum class SamplerKind : uint8_t { sobol, independent };
 inline constexpr const char* sampler_names[] = {"sobol", "independent"};
 
-/// Two numbers at once, in the halves of one word: bits reversed, each in its half.
-inline uint64_t reverse_both(uint64_t x) {
-  x = __builtin_bswap64(x);
-  x = x << 32 | x >> 32;
-  x = ((x & 0x0f0f0f0f0f0f0f0full) << 4) | ((x >> 4) & 0x0f0f0f0f0f0f0f0full);
-  x = ((x & 0x3333333333333333ull) << 2) | ((x >> 2) & 0x3333333333333333ull);
-  return ((x & 0x5555555555555555ull) << 1) | ((x >> 1) & 0x5555555555555555ull);
+inline uint32_t reverse_bits(uint32_t x) {
+  x = x << 16 | x >> 16;
+  x = ((x & 0x00ff00ffu) << 8) | ((x >> 8) & 0x00ff00ffu);
+  x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
+  x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
+  return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
 }
-inline uint32_t reverse_bits(uint32_t x) { return uint32_t(reverse_both(x)); }
 
 /// Owen scrambling of a bit-reversed number by hashing (Laine and Karras 2011, constants of Burley 2020).
 inline uint32_t laine_karras(uint32_t x, uint32_t seed) {
@@ -51,38 +49,62 @@ inline uint32_t sobol_second_reversed(uint32_t i) {
 
 inline float to_unit(uint32_t bits) { return std::min(float(bits) * 0x1p-32f, one_minus_epsilon); }
 
-/// Owen-scrambled Sobol points in independently shuffled pairs of dimensions (padding, Burley 2020). Each path number
-/// and side has two sequences, scrambled independently of each other, which even and odd passes take in turns: what the
-/// two halves of an image differ by is then their true error. Or independent numbers, for comparison.
-struct Sampler {
+/// Which numbers a path of a side draws in one pass: Owen-scrambled Sobol points in independently shuffled pairs of
+/// dimensions (padding, Burley 2020). Each path number and side has two sequences, scrambled independently of each
+/// other, which even and odd passes take in turns: what the two halves of an image differ by is then their true error.
+/// Or independent numbers, for comparison.
+struct Stream {
   uint64_t key = 0;    ///< of (seed, side, path), and of the half for sequences
   uint32_t index = 0;  ///< in the sequence, its bits reversed
-  uint32_t pair = 0;   ///< dimensions are handed out in pairs
   SamplerKind kind = SamplerKind::sobol;
+};
+
+/// Sobol: the pass's parity chooses the sequence, and half of its number is the point in it; so passes are to come in
+/// pairs, each number once. Independent: every pass has its own.
+Stream make_stream(SamplerKind kind, uint64_t seed, Side side, uint64_t path, uint32_t pass);
+
+/// Pairs of Sobol numbers that follow each other in a stream.
+struct PairBlock {
+  static constexpr uint32_t size = 16;
+  float x[size], y[size];
+};
+/// From pair number first on.
+void fill(const Stream& stream, uint32_t first, PairBlock& out);
+
+/// Hands out the numbers of a stream, in pairs, the first of which is number 1. Sobol pairs are computed by the block:
+/// all of one, in vectors, take little longer than a single pair.
+struct Sampler {
+  Stream stream;
+  uint32_t pair = 0;              ///< number of the last one handed out
+  uint32_t first = far_from_all;  ///< number of the block's first pair
+  PairBlock block;                ///< unset until a number is asked for
+
+  static constexpr uint32_t far_from_all = 0x80000000u;  ///< no number is in a block that begins there
+
+  Sampler() {}  // NOLINT: leaves the block open
+  explicit Sampler(const Stream& of, uint32_t handed_out = 0) { start(of, handed_out); }
+  void start(const Stream& of, uint32_t handed_out = 0) { stream = of, pair = handed_out, first = far_from_all; }
 
   /// The next pair of dimensions; skip sets it aside instead, for at to compute where it turns out to be needed.
   Vec2 next2() { return at(skip()); }
   float next1() { return next2().x; }
   uint32_t skip() { return ++pair; }
-  Vec2 at(uint32_t number) const {
-    const uint64_t stream = key + 0x9e3779b97f4a7c15ull * number;
-    if (kind == SamplerKind::independent) {
-      const uint64_t r = mix64(stream + 0xd1342543de82ef95ull * reverse_bits(index));
+  Vec2 at(uint32_t number) {
+    if (stream.kind == SamplerKind::independent) {
+      const uint64_t all = stream.key + 0x9e3779b97f4a7c15ull * number;
+      const uint64_t r = mix64(all + 0xd1342543de82ef95ull * reverse_bits(stream.index));
       return {to_unit(uint32_t(r)), to_unit(uint32_t(r >> 32))};
     }
-    const uint64_t h = mix64(stream);
-    // Shuffle the index in nested uniform blocks, so that pairs are independent of each other yet each stays a
-    // (0,2)-sequence.
-    const uint32_t shuffled = reverse_bits(laine_karras(index, uint32_t(h) ^ 0x5bd1e995u));
-    const uint32_t x = laine_karras(shuffled, uint32_t(h >> 32));
-    const uint32_t y = laine_karras(sobol_second_reversed(shuffled), uint32_t(h));
-    const uint64_t both = reverse_both(uint64_t(y) << 32 | x);
-    return {to_unit(uint32_t(both)), to_unit(uint32_t(both >> 32))};
+    if (number - first >= PairBlock::size) {
+      first = number - 1;  // the one before may have been set aside
+      fill(stream, first, block);
+    }
+    return {block.x[number - first], block.y[number - first]};
   }
 };
 
-/// The numbers of one path of a side in one pass. Sobol: the pass's parity chooses the sequence, and half of its number
-/// is the point in it; so passes are to come in pairs, each number once. Independent: every pass has its own.
-Sampler make_sampler(SamplerKind kind, uint64_t seed, Side side, uint64_t path, uint32_t pass);
+inline Sampler make_sampler(SamplerKind kind, uint64_t seed, Side side, uint64_t path, uint32_t pass) {
+  return Sampler(make_stream(kind, seed, side, path, pass));
+}
 
 }  // namespace ajar
