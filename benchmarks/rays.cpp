@@ -95,7 +95,10 @@ std::vector<Asked> asked() {
 double least_loop(const Scene& scene, const Accel& accel, const std::vector<Asked>& asked, uint64_t& hits, float& sum) {
   const double start = process_cpu_seconds();
   Sampler sampler = make_sampler(SamplerKind::sobol, 1, Side::camera, 0, 1);
+  uint32_t drawn = 0;
   for (const Asked& ray : asked) {
+    if (drawn++ % 8 == 0)
+      sampler.start(make_stream(SamplerKind::sobol, 1, Side::camera, drawn, 1));  // as often as paths
     Hit hit;
     const bool found = ray.any_hit ? accel.occluded(ray.o, ray.d, ray.t_max)
                                    : accel.intersect(ray.o, ray.d, ray.t_min, ray.t_max, hit);

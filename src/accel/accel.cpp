@@ -265,8 +265,9 @@ typedef float FourFloats __attribute__((vector_size(16), may_alias));
 // cache.
 void set_ray(const Vec3& o, const Vec3& d, float t_min, float t_max, float stretch, RTCRay& ray) {
   const float shrink = 1 / stretch;
-  reinterpret_cast<FourFloats&>(ray.org_x) = FourFloats{o.x, o.y, o.z, t_min * shrink};
-  reinterpret_cast<FourFloats&>(ray.dir_x) = FourFloats{stretch * d.x, stretch * d.y, stretch * d.z, 0};
+  auto* const fours = reinterpret_cast<FourFloats*>(&ray);
+  fours[0] = FourFloats{o.x, o.y, o.z, t_min * shrink};
+  fours[1] = FourFloats{stretch * d.x, stretch * d.y, stretch * d.z, 0};
   ray.tfar = t_max * shrink;
   ray.mask = ~0u, ray.id = 0, ray.flags = 0;
 }

@@ -33,6 +33,9 @@ Stream pixel_numbers(const Job& job, uint64_t pixel, uint32_t pass, uint32_t k) 
   return make_stream(job.sampler, job.seed, Side::camera, pixel, point);
 }
 
+// Of a sample's pairs of numbers, the one that says where in its pixel it looks, and where the lens passes it.
+constexpr uint32_t raster_pair = 1, lens_pair = 2;
+
 bool has_lens(const Job& job) { return job.scene->camera.kind == CameraKind::thinlens; }
 
 // The k-th sample of a pixel in the pass; the first one may teach.
@@ -44,16 +47,15 @@ void begin(const Job& job, const Film& film, int x, int y, uint32_t k, Sample& s
   s.number = k, s.count = count_of(job.adaptive, pixel);
   s.teaches = k == 0 && job.learning && is_recorded(*job.learning, pixel, s.pass, recorded_one_in(*job.learning, film));
   s.stream = pixel_numbers(job, pixel, s.pass, k);
-  if (has_lens(job)) s.lens = Sampler(s.stream, 1).next2();
+  if (has_lens(job)) s.lens = Sampler(s.stream).at(lens_pair);
 }
 
-// Where in its pixel the sample looks, by the first of its numbers; the next ones are the subpath's.
+// Where in its pixel the sample looks; numbers go on with those of its subpath.
 void aim(const Job& job, const Film& film, Sample& s, Sampler& numbers) {
-  numbers.start(s.stream);
+  numbers.start(s.stream, has_lens(job) ? lens_pair : raster_pair);
   const Vec2 centre(float(film.x0 + s.x) + 0.5f, float(film.y0 + s.y) + 0.5f);
-  s.raster = centre + ajar::sample(film.filter, numbers.next2(), s.weight);
+  s.raster = centre + ajar::sample(film.filter, numbers.at(raster_pair), s.weight);
   s.weight *= float(traced_one_in(job, film)) / float(s.count);
-  if (has_lens(job)) numbers.skip();
 }
 
 bool is_traced(const Job& job, const Film& film, int x, int y) {
@@ -90,8 +92,8 @@ void note(PixelSpread& spread, uint32_t pass, float brought) {
 // What the sample brings its pixel, filtered.
 Rgb trace_pixel(const Job& job, const Film& film, Sample& sample, bool splat, Scratch& scratch) {
   const size_t splats = scratch.splats->size();
-  aim(job, film, sample, scratch.numbers);
   scratch.clock = is_timed(sample) ? clock_ticks() : 0;
+  aim(job, film, sample, scratch.numbers);
   job.trace(job, sample, scratch);
   if (!accept(sample.value, sample.path, scratch)) sample.value = Rgb(0);
   ++scratch.counters.camera_paths;

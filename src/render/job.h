@@ -25,7 +25,8 @@ struct PhotonMaps;
 struct Vpls;
 struct Sample;
 struct Scratch;
-/// Traces one sample; what it finds depends on the sample alone, and on the light halves traced before.
+/// Traces one sample; what it finds depends on the sample alone, and on the light halves traced before. Of a camera
+/// half scratch.numbers are those that come after what aims it.
 using Trace = void (*)(const Job&, Sample&, Scratch&);
 
 struct Job {

@@ -127,22 +127,36 @@ TEST(Geometry, ShadingNormalsLieOnTheSideOfNg) {
   EXPECT_GT(glm::dot(s.ng, n), 0);  // winding decides
 }
 
-// A walk sets one Surface after another in the same place.
+bool is_same(const Surface& a, const Surface& b) {
+  return a.p == b.p && a.error == b.error && a.ng == b.ng && a.frame.s == b.frame.s && a.frame.t == b.frame.t &&
+         a.frame.n == b.frame.n && a.uv == b.uv && a.bary == b.bary && a.dpdu == b.dpdu && a.dpdv == b.dpdv &&
+         a.shape == b.shape && a.prim == b.prim && a.instance == b.instance;
+}
+
+// A walk sets one Surface after another in the same place: nothing is left of the one before.
 TEST(Geometry, SurfacesAreSetAnew) {
   Scene scene;
   Mesh bare = bent_triangle();
-  bare.uvs.clear();
-  Hit bent, plain;
-  bent.shape = kit::add_mesh(scene, bent_triangle()), plain.shape = kit::add_mesh(scene, bare);
-  bent.bary = {0.3f, 0.2f}, plain.bary = {0.25f, 0.5f};
-  Surface s;
-  set_surface(scene, bent, Vec3(0), Vec3(0, 0, 1), s);
-  EXPECT_NE(s.dpdu, Vec3(0));
-  set_surface(scene, plain, Vec3(0), Vec3(0, 0, 1), s);
-  EXPECT_EQ(s.dpdu, Vec3(0));
-  EXPECT_EQ(s.dpdv, Vec3(0));
-  EXPECT_EQ(s.uv, plain.bary);
-  EXPECT_EQ(s.shape, plain.shape);
+  bare.uvs.clear(), bare.normals.clear();
+  std::vector<uint32_t> shapes = {kit::add_mesh(scene, bent_triangle()), kit::add_mesh(scene, bare)};
+  for (const ShapeKind kind : quadrics)
+    shapes.push_back(kit::add_shape(scene, kind, placed(0.7f, Vec3(2), {3, -1, 2})));
+  scene.instances[add_instance(scene, 0, placed(2, {-1, 2, 0.7f}, {1, 2, 3}))].to_object =
+      inverse(placed(2, {-1, 2, 0.7f}, {1, 2, 3}));
+  std::vector<Hit> hits;
+  for (const uint32_t shape : shapes)
+    for (const uint32_t instance : {none, 0u}) {
+      Hit hit;
+      hit.t = 2, hit.shape = shape, hit.instance = instance, hit.bary = {0.3f, 0.2f};
+      hits.push_back(hit);
+    }
+  const Vec3 o(0.3f, 0.2f, 2), d(0, 0, -1);
+  for (const Hit& before : hits)
+    for (const Hit& hit : hits) {
+      Surface s = make_surface(scene, before, o, d);
+      set_surface(scene, hit, o, d, s);
+      EXPECT_TRUE(is_same(s, make_surface(scene, hit, o, d))) << before.shape << ' ' << hit.shape;
+    }
 }
 
 TEST(Geometry, UselessTextureCoordinatesGiveZeroTangents) {

@@ -79,7 +79,7 @@ struct Sampler {
   uint32_t first = far_from_all;  ///< number of the block's first pair
   PairBlock block;                ///< unset until a number is asked for
 
-  static constexpr uint32_t far_from_all = 0x80000000u;  ///< no number is in a block that begins there
+  static constexpr uint32_t far_from_all = 0xfffffff0u;  ///< nobody draws so many that one is in a block from there
 
   Sampler() {}  // NOLINT: leaves the block open
   explicit Sampler(const Stream& of, uint32_t handed_out = 0) { start(of, handed_out); }

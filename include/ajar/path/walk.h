@@ -118,8 +118,7 @@ inline float survival_probability(const WalkOptions& options, const Guide& guide
 }
 
 /// Samples the direction in which a path goes on, beta and survival times its weight; with roulette only some go on.
-/// Returns the probability with which it did; 0 where it ends. Takes two pairs of numbers, but computes what it uses
-/// alone.
+/// Returns the probability with which it did; 0 where it ends. Takes two pairs of numbers.
 inline float choose_direction(const Guide& guide, Mode mode, const WalkOptions& options, int vertices, Sampler& sampler,
                               Rgb& beta, Rgb& survival, float& promised, GuideSample& out) {
   const uint32_t lobe_and_roulette = sampler.skip();
