@@ -8,7 +8,11 @@ Stream make_stream(SamplerKind kind, uint64_t seed, Side side, uint64_t path, ui
   return {hash(key, pass % 2), reverse_bits(pass / 2), kind};
 }
 
-// Loops without branches, over arrays of one kind: compilers make vectors of them.
+// Loops without branches, over arrays of one kind: compilers make vectors of them. In a program for all processors those
+// of the one that it runs on, since the oldest of them multiply no vectors of integers.
+#if defined(__x86_64__) && defined(__GLIBC__) && !defined(__AVX2__)
+__attribute__((target_clones("default", "avx2")))
+#endif
 void fill(const Stream& stream, uint32_t first, PairBlock& out) {
   constexpr uint32_t n = PairBlock::size;
   uint64_t h[n];
