@@ -1,19 +1,14 @@
 #include "ajar/core/sampler.h"
 
 namespace ajar {
+namespace {
 
-Stream make_stream(SamplerKind kind, uint64_t seed, Side side, uint64_t path, uint32_t pass) {
-  const uint64_t key = hash(hash(seed, uint64_t(side) + 1), path);
-  if (kind == SamplerKind::independent) return {key, reverse_bits(pass), kind};
-  return {hash(key, pass % 2), reverse_bits(pass / 2), kind};
-}
-
-// Loops without branches, over arrays of one kind: compilers make vectors of them. In a program for all processors those
-// of the one that it runs on, since the oldest of them multiply no vectors of integers.
+// Loops without branches, over arrays of one kind: compilers make vectors of them. In a program for all processors
+// those of the one that it runs on, since the oldest of them multiply no vectors of integers.
 #if defined(__x86_64__) && defined(__GLIBC__) && !defined(__AVX2__)
 __attribute__((target_clones("default", "avx2")))
 #endif
-void fill(const Stream& stream, uint32_t first, PairBlock& out) {
+void set_pairs(const Stream& stream, uint32_t first, PairBlock& out) {
   constexpr uint32_t n = PairBlock::size;
   uint64_t h[n];
   uint32_t low[n], high[n];
@@ -27,5 +22,15 @@ void fill(const Stream& stream, uint32_t first, PairBlock& out) {
     out.y[i] = to_unit(reverse_bits(laine_karras(sobol_second_reversed(shuffled), low[i])));
   }
 }
+
+}  // namespace
+
+Stream make_stream(SamplerKind kind, uint64_t seed, Side side, uint64_t path, uint32_t pass) {
+  const uint64_t key = hash(hash(seed, uint64_t(side) + 1), path);
+  if (kind == SamplerKind::independent) return {key, reverse_bits(pass), kind};
+  return {hash(key, pass % 2), reverse_bits(pass / 2), kind};
+}
+
+void fill(const Stream& stream, uint32_t first, PairBlock& out) { set_pairs(stream, first, out); }
 
 }  // namespace ajar
