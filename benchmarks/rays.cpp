@@ -94,7 +94,7 @@ std::vector<Asked> asked() {
 
 double least_loop(const Scene& scene, const Accel& accel, const std::vector<Asked>& asked, uint64_t& hits, float& sum) {
   const double start = process_cpu_seconds();
-  Sampler sampler = make_sampler(SamplerKind::sobol, 1, Side::camera, 0, 1);
+  Sampler sampler;
   uint32_t drawn = 0;
   for (const Asked& ray : asked) {
     if (drawn++ % 8 == 0)

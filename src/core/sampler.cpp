@@ -4,7 +4,8 @@ namespace ajar {
 namespace {
 
 // Loops without branches, over arrays of one kind: compilers make vectors of them. In a program for all processors
-// those of the one that it runs on, since the oldest of them multiply no vectors of integers.
+// those of the one that it runs on, since the oldest of them multiply no vectors of integers. (Called in this file
+// alone: clang makes such functions only where no declaration went before.)
 #if defined(__x86_64__) && defined(__GLIBC__) && !defined(__AVX2__)
 __attribute__((target_clones("default", "avx2")))
 #endif
@@ -12,7 +13,7 @@ void set_pairs(const Stream& stream, uint32_t first, PairBlock& out) {
   constexpr uint32_t n = PairBlock::size;
   uint64_t h[n];
   uint32_t low[n], high[n];
-  for (uint32_t i = 0; i < n; ++i) h[i] = mix64(stream.key + 0x9e3779b97f4a7c15ull * (first + i));
+  for (uint32_t i = 0; i < n; ++i) h[i] = mix64(key_of(stream, first + i));
   for (uint32_t i = 0; i < n; ++i) low[i] = uint32_t(h[i]), high[i] = uint32_t(h[i] >> 32);
   for (uint32_t i = 0; i < n; ++i) {
     // Shuffle the index in nested uniform blocks, so that pairs are independent of each other yet each stays a

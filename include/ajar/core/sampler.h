@@ -62,6 +62,8 @@ struct Stream {
 /// Sobol: the pass's parity chooses the sequence, and half of its number is the point in it; so passes are to come in
 /// pairs, each number once. Independent: every pass has its own.
 Stream make_stream(SamplerKind kind, uint64_t seed, Side side, uint64_t path, uint32_t pass);
+/// Of one of its pairs.
+inline uint64_t key_of(const Stream& stream, uint32_t pair) { return stream.key + 0x9e3779b97f4a7c15ull * pair; }
 
 /// Pairs of Sobol numbers that follow each other in a stream.
 struct PairBlock {
@@ -91,8 +93,7 @@ struct Sampler {
   uint32_t skip() { return ++pair; }
   Vec2 at(uint32_t number) {
     if (stream.kind == SamplerKind::independent) {
-      const uint64_t all = stream.key + 0x9e3779b97f4a7c15ull * number;
-      const uint64_t r = mix64(all + 0xd1342543de82ef95ull * reverse_bits(stream.index));
+      const uint64_t r = mix64(key_of(stream, number) + 0xd1342543de82ef95ull * reverse_bits(stream.index));
       return {to_unit(uint32_t(r)), to_unit(uint32_t(r >> 32))};
     }
     if (number - first >= PairBlock::size) {
